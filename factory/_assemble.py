@@ -9,7 +9,7 @@ import json
 import os
 import shutil
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -78,7 +78,7 @@ def _write(plan: Plan, staging: Staging, folder: Path) -> None:
         **{kind: int(small[f"{kind}_count"].sum()) for kind in ("frame", "node", "triangle", "value")},
     }
     group = zarr.create_group(store=folder, zarr_format=3, attributes=_attributes(plan, done))
-    fixed = {**small, **_fixed_arrays(plan), **_geometry_arrays(plan)}
+    fixed = {**small, **_block_arrays(plan, specs), **_geometry_arrays(plan)}
     streams: dict[str, _Appender] = {}
     for name, spec in specs.items():
         if name in fixed:
@@ -305,16 +305,20 @@ def _poke_arrays(
     return arrays
 
 
-def _fixed_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
-    return {"grid_rest": grid_points(plan.block), "level_depth": level_depths(plan.block[2])}
+def _block_arrays(plan: Plan, specs: Mapping[str, Spec]) -> dict[str, NDArray[Any]]:
+    """Grid and levels of the block of each geometry, or of the one block of all."""
+    arrays = {
+        "grid_rest": np.array([grid_points(block) for block in plan.blocks]),
+        "level_depth": np.array([level_depths(block[2]) for block in plan.blocks]),
+    }
+    return {name: rows[0] if specs[name].rows == "fixed" else rows for name, rows in arrays.items()}
 
 
 def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
-    grid, height = grid_points(plan.block), plan.block[2]
     pairs = [(inclusion, card) for inclusion in plan.inclusions for card in plan.cards]
     levels = np.zeros((len(pairs), SIZE, SIZE, LEVELS), dtype=np.uint8)
-    for row, (inclusion, card) in enumerate(pairs):
-        levels[row] = profiles(grid, height, inclusion, card.stiffness)
+    for row, (block, (inclusion, card)) in enumerate(zip(plan.blocks, pairs, strict=True)):
+        levels[row] = profiles(grid_points(block), block[2], inclusion, card.stiffness)
     kinds = _stored_kinds(plan)
     bodies = [inclusion for inclusion, _ in pairs]
     return {

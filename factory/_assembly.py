@@ -408,11 +408,10 @@ def _mesh(data: Dataset, index: int) -> Mesh:
     element = data.attributes["identity"].get("element")
     if element != "hex20":
         raise NotCheckedError(f"its elements are {element}, not hex20")
-    inclusion = data.inclusion(int(data.table["poke_geometry"][index]))
-    width, length, height = (side * 1e-3 for side in recipe["block_mm"])
+    geometry = int(data.table["poke_geometry"][index])
     site, direction = data.table["site"][index], data.table["direction"][index]
     return poke_mesh(
-        block=Block(size=(width, length, height), inclusion=inclusion),
+        block=Block(size=data.block(geometry), inclusion=data.inclusion(geometry)),
         site=(float(site[0]), float(site[1])),
         direction=(float(direction[0]), float(direction[1]), float(direction[2])),
         rod=_rod(data),

@@ -13,7 +13,7 @@ import yaml
 
 from factory import _paper
 from factory._card import Facts, beside_the_paper, size_category, solves
-from factory._cli import counted, duration, size_text
+from factory._cli import counted, duration, sides_text, size_text
 from factory._features import Features, measures
 
 _SNIPPET = """```python
@@ -25,7 +25,7 @@ first, count = int(store["frame_start"][poke]), int(store["frame_count"][poke])
 frames = slice(first, first + count)
 depth = store["depth"][frames]  # m
 force = store["rod_force"][frames]  # N
-surface = store["grid_rest"][:] + store["grid_displacement"][frames]  # m, frames x 32 x 32 x 3
+surface = {rest} + store["grid_displacement"][frames]  # m, frames x 32 x 32 x 3
 print(f"poke {{poke}}: {{1e3 * depth.max():.2f}} mm, {{(force**2).sum(axis=1).max() ** 0.5:.3f}} N")
 ```"""
 
@@ -103,8 +103,13 @@ def _holds(facts: Facts) -> Iterator[str]:
         f"Of the contact points of a shape, {protocol['shared_sites']} are common to all material levels, "
         f"and {protocol['own_sites']} are drawn for each level. The seed is {facts.data.attributes['seed']}."
     )
+    head: tuple[str, ...] = ("rigid inclusion", "kind", "mm")
+    shapes: list[tuple[str, ...]]
     shapes = [(f"`{shape['id']}`", shape.get("kind", ""), _lengths(shape)) for shape in recipe["shapes"]]
-    yield _table(("rigid inclusion", "kind", "mm"), shapes)
+    if _own_blocks(facts):
+        head = (*head, "block [mm]")
+        shapes = [(*row, sides_text([block])) for row, block in zip(shapes, _blocks(facts), strict=True)]
+    yield _table(head, shapes)
     rows = [
         (
             f"`{m.level}`",
@@ -134,12 +139,14 @@ def _simulated(facts: Facts) -> Iterator[str]:
     course = protocol.get("course")
     motion = "along a course over time (quasi-static)" if course else "in quasi-static steps, without time"
     versions = ", ".join(f"{name} {number}" for name, number in facts.identity["versions"].items())
-    sides = " x ".join(f"{side:g}" for side in recipe["block_mm"])
+    block = f"Block: {sides_text(_blocks(facts))} mm"
+    if _own_blocks(facts):
+        block += ", one for each shape"
     tolerance = facts.data.attributes["solver_tolerance"]
     yield "## Simulation"
     lines = [
         f"Law: `{facts.data.attributes['model']}`; finite elements in large deformation, static equilibrium.",
-        f"Block: {sides} mm, its base and the inclusion fixed.",
+        f"{block}, its base and the inclusion fixed.",
         f"Indenter: {rod['tip']}, radius {rod['radius_mm']:g} mm, edge radius {rod['edge_radius_mm']:g} mm; "
         f"contact with a Coulomb friction coefficient of {recipe['friction']:g}.",
         f"Motion: up to {protocol['depth_mm']:g} mm from first contact, up to "
@@ -244,7 +251,10 @@ def _cost(facts: Facts) -> Iterator[str]:
 def _load(facts: Facts) -> Iterator[str]:
     name = facts.data.path.resolve().name.removesuffix(".zip")
     yield "## Loading"
-    yield _SNIPPET.format(name=name, poke=facts.shown)
+    rest = 'store["grid_rest"][int(store["poke_geometry"][poke])]'
+    if not _own_blocks(facts):
+        rest = 'store["grid_rest"][:]'
+    yield _SNIPPET.format(name=name, poke=facts.shown, rest=rest)
     yield (
         "The zip is read without unpacking: "
         f'`zarr.open_group(zarr.storage.ZipStore("{name}.zip"), mode="r")`. '
@@ -305,8 +315,23 @@ def _pairs(pairs: Sequence[tuple[float, float]]) -> list[str]:
     return [f"{mean:.2f} ± {sd:.2f}" for mean, sd in pairs]
 
 
+def _blocks(facts: Facts) -> list[list[float]]:
+    """Sides of the block of each shape [mm]."""
+    recipe = facts.identity["recipe"]
+    return [shape.get("block_mm", recipe["block_mm"]) for shape in recipe["shapes"]]
+
+
+def _own_blocks(facts: Facts) -> bool:
+    """True if each shape has a block of its own."""
+    return "block_mm" in facts.identity["recipe"]["shapes"][0]
+
+
 def _lengths(shape: dict[str, Any]) -> str:
-    lengths = {key[:-3]: value for key, value in shape.items() if key.endswith("_mm") and value is not None}
+    lengths = {
+        key[:-3]: value
+        for key, value in shape.items()
+        if key.endswith("_mm") and key != "block_mm" and value is not None
+    }
     return ", ".join(f"{key} {_value(value)}" for key, value in lengths.items())
 
 

@@ -14,7 +14,7 @@ from factory._archive import zip_faults
 from factory._course import PHASES, states_at
 from factory._errors import InputError, one_line
 from factory._record import STATUSES
-from factory._sampling import LEVELS, RIGID, SIZE, profiles
+from factory._sampling import LEVELS, RIGID, SIZE, grid_points, level_depths, profiles
 from factory._store import DamagedError, file_faults, manifest_faults
 from factory.reader import Dataset, is_zip, open_dataset
 
@@ -23,6 +23,7 @@ FORCE_FLOOR = 1e-3  # N: least force that the balance is relative to
 COURSE_SLACK = 1e-6  # relative to the course's depth, or to its speed
 ENERGY_SLACK = 1e-9  # relative to the energy dissipated so far: rounding
 TIP_SLACK = 0.01  # relative to the frame spacing
+SAME_PLACE = 1e-9  # m: rounding of positions at rest
 
 Check = Callable[[Dataset], list[str]]
 
@@ -277,15 +278,37 @@ def clock(data: Dataset) -> list[str]:
     return faults
 
 
+def blocks(data: Dataset) -> list[str]:
+    """Check that grid, levels and the surface of every poke are those of the block that the recipe states."""
+    faults = []
+    for geometry in range(len(data.shapes) * len(data.levels)):
+        block = data.block(geometry)
+        for name, found, expected in (
+            ("grid_rest", data.grid_rest(geometry), grid_points(block)),
+            ("level_depth", data.level_depth(geometry), level_depths(block[2])),
+        ):
+            if found.shape != expected.shape or not np.allclose(found, expected, rtol=0.0, atol=SAME_PLACE):
+                faults.append(f"geometry {geometry}: {name} is not that of its block")
+    for index in np.flatnonzero(data.table["done"]).tolist():
+        block = data.block(int(data.table["poke_geometry"][index]))
+        rest = data.read("surface_rest", data.rows(index, "node"))
+        corners = np.array([rest.min(axis=0), rest.max(axis=0)])
+        expected = np.array([(-block[0] / 2, -block[1] / 2, 0.0), (block[0] / 2, block[1] / 2, block[2])])
+        if not np.allclose(corners, expected, rtol=0.0, atol=SAME_PLACE):
+            faults.append(f"poke {index}: its surface at rest is not that of its block")
+    return faults
+
+
 def inclusion_profiles(data: Dataset) -> list[str]:
     """Check that the rigid part of every stiffness profile is the inclusion that the store describes."""
-    faults, grid = [], data.table["grid_rest"]
+    faults = []
     for geometry in range(len(data.shapes) * len(data.levels)):
         try:
             inclusion = data.inclusion(geometry)
         except InputError as error:
             faults.append(str(error))
             continue
+        grid = data.grid_rest(geometry)
         rigid = profiles(grid, float(grid[0, 0, 2]), inclusion, 0.0) == round(255 * RIGID)
         if not np.array_equal(data.read("profile", geometry) == round(255 * RIGID), rigid):
             faults.append(
@@ -308,6 +331,7 @@ CHECKS: dict[str, Check] = {
     "shapes": shapes,
     "finite values": finite,
     "statuses": statuses,
+    "blocks": blocks,
     "inclusions": inclusion_profiles,
     "equilibrium of each frame": equilibrium,
     "base reaction = rod force": forces,

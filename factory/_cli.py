@@ -10,7 +10,7 @@ import importlib
 import importlib.metadata
 import logging
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
@@ -127,6 +127,12 @@ def duration(seconds: float) -> str:
 def counted(number: int, noun: str) -> str:
     """Number with its noun: "1 poke", "2 pokes"."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def sides_text(blocks: Iterable[Sequence[float]]) -> str:
+    """Sides of blocks, each as one number or as its least and largest: "100 x 70.1 to 130 x 32"."""
+    ends = [(f"{min(side):g}", f"{max(side):g}") for side in zip(*blocks, strict=True)]
+    return " x ".join(low if low == high else f"{low} to {high}" for low, high in ends)
 
 
 def size_text(count: float) -> str:

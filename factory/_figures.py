@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import Polygon, Rectangle
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
 
@@ -69,7 +69,9 @@ def _is_preview(path: Path) -> bool:
 
 
 def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:
-    half = np.array(plan.block[:2]) / 2 * 1e3
+    half = np.array(plan.blocks)[:, :2] / 2 * 1e3
+    for x, y in np.unique(half, axis=0):
+        axes.add_patch(Rectangle((-x, -y), 2 * x, 2 * y, fill=False, edgecolor="0.8", lw=0.5))
     for inclusion in plan.inclusions:
         axes.add_patch(Polygon(inclusion.plan() * 1e3, closed=True, **_INCLUSION))
     for poke in plan.pokes:
@@ -78,7 +80,8 @@ def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:
         dx, dy = (v * 6 for v in poke.scene.direction[:2])
         axes.plot([x, x + dx], [y, y + dy], color=colour, lw=0.7)
         axes.plot(x, y, ".", color=colour, ms=3)
-    axes.set(xlim=(-half[0], half[0]), ylim=(-half[1], half[1]), xlabel="x [mm]", ylabel="y [mm]")
+    x, y = half.max(axis=0)
+    axes.set(xlim=(-x, x), ylim=(-y, y), xlabel="x [mm]", ylabel="y [mm]")
     axes.set_aspect("equal")
     axes.set_title("contact points and headings; inclusions of all shapes", fontsize=9)
 
@@ -92,7 +95,7 @@ def _top(plan: Plan, traces: dict[int, Trace], axes: Any, figure: Figure) -> Non
     deepest = max(shown, key=lambda i: (traces[i].depth.max(), -i))
     grid = traces[deepest].grid
     assert grid is not None
-    rest = grid_points(plan.block)
+    rest = grid_points(plan.pokes[deepest].scene.block.size)
     x, y = (rest[..., axis] * 1e3 for axis in (0, 1))
     drawn = axes.pcolormesh(x, y, grid[..., 2] * 1e3, cmap="viridis", shading="nearest")
     figure.colorbar(drawn, ax=axes, label="vertical displacement [mm]")
@@ -153,7 +156,7 @@ def _section(poke: PokeData, data: Dataset, axes: Any, figure: Figure) -> None:
     axes.add_collection(LineCollection(cut * 1e3, colors="#2171b5", linewidths=1.2))
 
     # part of the plane within the block, and the grid columns nearest to it
-    rest = data.table["grid_rest"]
+    rest = data.grid_rest(int(data.table["poke_geometry"][poke.index]))
     (low, high), height = (rest[[0, -1], [0, -1], :2] - tip[:2]), float(rest[0, 0, 2])
     ends = np.sort([low, high], axis=0)
     with np.errstate(divide="ignore"):

@@ -18,7 +18,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from factory._build import BuildProgress, Built, check_continues, is_built
-from factory._cli import duration, size_text
+from factory._cli import duration, sides_text, size_text
 from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
 from factory._errors import describe_os_error
@@ -159,6 +159,8 @@ def plan_table(plan: Plan, target: Path, expected: Estimate, workers: int) -> Ta
         f"{len(plan.pokes)} = {len(plan.inclusions)} shapes x {len(plan.materials)} material levels x "
         f"{plan.recipe.pokes_each} ({protocol.shared_sites} shared contact points, {protocol.own_sites} own)",
     )
+    blocks = [plan.recipe.block_of(shape) for shape in plan.recipe.shapes]
+    table.add_row("block", f"{sides_text(blocks)} mm")
     shared = f", by {expected.solves} solves" if expected.solves < expected.missing else ""
     table.add_row("to do", f"{expected.missing}{shared}")
     table.add_row("depth", f"{protocol.depth_mm:g} mm, a frame each {protocol.frame_spacing_mm:g} mm")

@@ -226,6 +226,19 @@ DERIVED_SPECS: dict[str, Spec] = {
     ),
 }
 
+# in place of the arrays of these names in stores whose shapes have blocks of their own
+BLOCK_SPECS: dict[str, Spec] = {
+    "grid_rest": Spec(
+        rows="geometry", dtype="f8", units="m", chunk=64, shard=64,
+        dims=("grid_row", "grid_column", "axis"), row=(SIZE, SIZE, 3),
+        text="rest positions of the grid on the top face of the block; rows along y, columns along x",
+    ),
+    "level_depth": Spec(
+        rows="geometry", dtype="f8", units="m", chunk=64, shard=64, dims=("level",), row=(LEVELS,),
+        text="depth below the rest surface of each profile level",
+    ),
+}
+
 FIRST_DIMENSION: dict[Rows, str] = {
     "poke": "poke", "frame": "frame", "node": "surface_node", "triangle": "surface_triangle_row",
     "value": "surface_value", "geometry": "geometry",
@@ -238,6 +251,7 @@ def specs_of(identity: Mapping[str, Any]) -> dict[str, Spec]:
     """Specifications of a store's arrays, by name, from a plan's identity."""
     return {
         **SPECS,
+        **(BLOCK_SPECS if any("block_mm" in shape for shape in identity["recipe"]["shapes"]) else {}),
         **(COURSE_SPECS if identity["recipe"]["protocol"].get("course") else {}),
         **(DERIVED_SPECS if identity.get("one_solve") else {}),
     }

@@ -1,4 +1,4 @@
-"""The shapes of a recipe: inclusions stated one by one, or drawn from ranges of their lengths (mm).
+"""The shapes of a recipe and their blocks: stated one by one, or drawn from ranges of their lengths (mm).
 
 Inclusion shapes are those of `tisim.inclusions.recipe_shapes()`: one that is registered there is known here.
 An entry with the key `draw` gives that number of shapes, each length drawn uniformly from an interval:
@@ -6,13 +6,16 @@ An entry with the key `draw` gives that number of shapes, each length drawn unif
     {kind: cube, id: cube, draw: 12, side_mm: [6, 26]}
 
 They are drawn when the recipe is read, and are then shapes like any others.
+
+If a side of the recipe's `block_mm` is an interval, or an entry states a `block_mm` in place of the recipe's,
+each shape has a block of its own. Its sides are drawn together with the shape's lengths, so that it fits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -22,9 +25,11 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     TypeAdapter,
     ValidationError,
     create_model,
+    model_serializer,
 )
 from pydantic_core import PydanticCustomError
 
@@ -36,10 +41,37 @@ Positive = Annotated[float, Field(gt=0, le=1e6)]
 Natural = Annotated[float, Field(ge=0, le=1e6)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=60)]
 
+Size = tuple[Positive, Positive, Positive]  # sides along x, y, z
+
 _MM = 1e-3
 _THINNEST_MM = 1.0  # least that tisim's meshes need above and beside an inclusion, and of it above the base
 _DIGITS = 2  # decimals of drawn lengths [mm]
-_DRAWS = 1000  # attempts to draw one shape that fits
+_DRAWS = 1000  # attempts to draw one shape, or its block, that fits
+
+
+def _in_order(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise ValueError(f"expected the smaller of two lengths first, got {value[0]:g} and {value[1]:g}")
+    return value
+
+
+_STRICT = ConfigDict(strict=True, allow_inf_nan=False)
+_ONE: TypeAdapter[float] = TypeAdapter(Positive, config=_STRICT)
+_BETWEEN: TypeAdapter[tuple[float, float]] = TypeAdapter(
+    Annotated[tuple[Positive, Positive], AfterValidator(_in_order)], config=_STRICT
+)
+
+
+def _side(value: object) -> object:
+    """Validate a side as the one or the other, so that a fault has no key of both."""
+    try:
+        return (_BETWEEN if isinstance(value, tuple) else _ONE).validate_python(value)
+    except ValidationError as error:
+        raise nested_problems(error) from None
+
+
+Side = Annotated[float | tuple[float, float], BeforeValidator(_side)]
+Sides = tuple[Side, Side, Side]
 
 
 class Shape(Strict):
@@ -51,10 +83,19 @@ class Shape(Strict):
         Name of a shape that recipes offer ("cube", "sphere", "cylinder", or one that was registered).
     id : str
         Name of this inclusion within the recipe.
+    block_mm : (float, float, float) or None
+        Sides of its own block; None if all shapes have the recipe's.
     """
 
     kind: str
     id: Name
+    block_mm: Size | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_the_recipes_block(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Omit a block that is the recipe's, so that the identity of recipes with one stays as it was."""
+        written: dict[str, Any] = write(self)
+        return {k: v for k, v in written.items() if k != "block_mm" or self.block_mm is not None}
 
     @property
     def lengths_mm(self) -> dict[str, float]:
@@ -122,7 +163,7 @@ _SHAPE: TypeAdapter[Shape] = TypeAdapter(Annotated[Shape, BeforeValidator(of_its
 class Room:
     """Space for inclusions in a block [mm]; fields as in `factory.recipe.Recipe`."""
 
-    block_mm: tuple[float, float, float]
+    block_mm: Size
     border_mm: float
     cover_mm: float
 
@@ -157,33 +198,26 @@ class Drawn(Strict):
     id: Annotated[Name, Field(max_length=50)]
     draw: Annotated[int, Field(ge=1, le=10_000)]
 
-    def shapes(self, room: Room, random: np.random.Generator) -> list[dict[str, Any]]:
-        """Draw the entries of the shapes; ValueError if none is found that fits."""
+    def names(self) -> list[str]:
+        """Names of the shapes."""
         digits = max(2, len(str(self.draw)))
-        return [self._one(f"{self.id}-{k + 1:0{digits}}", room, random) for k in range(self.draw)]
+        return [f"{self.id}-{k + 1:0{digits}}" for k in range(self.draw)]
 
-    def _one(self, name: str, room: Room, random: np.random.Generator) -> dict[str, Any]:
-        fault = None
-        for _ in range(_DRAWS):
-            entry: dict[str, Any] = {"kind": self.kind, "id": name}
-            for p in inclusions.recipe_shapes()[self.kind].parameters:
-                low, high = getattr(self, f"{p.name}_mm")
-                drawn = low if low == high else round(float(random.uniform(low, high)), _DIGITS)
-                entry[f"{p.name}_mm"] = drawn
-            fault = room.fault(_SHAPE.validate_python(entry))
-            if fault is None:
-                return entry
-        raise ValueError(f"shapes.{self.id}: none of {_DRAWS} drawn fits; of the last, {fault}")
+    def one(self, name: str, random: np.random.Generator) -> dict[str, Any]:
+        """Draw the entry of one shape, which need not fit."""
+        lengths = [f"{p.name}_mm" for p in inclusions.recipe_shapes()[self.kind].parameters]
+        drawn = {length: _between(getattr(self, length), random) for length in lengths}
+        return {"kind": self.kind, "id": name, **drawn}
+
+
+def _between(length: float | tuple[float, float], random: np.random.Generator) -> float:
+    """A length that is stated, or drawn from an interval."""
+    low, high = length if isinstance(length, tuple) else (length, length)
+    return low if low == high else round(float(random.uniform(low, high)), _DIGITS)
 
 
 def _as_range(value: object) -> object:
     return value if isinstance(value, tuple) else (value, value)
-
-
-def _in_order(value: tuple[float, float]) -> tuple[float, float]:
-    if value[0] > value[1]:
-        raise ValueError(f"expected the smaller of two lengths first, got {value[0]:g} and {value[1]:g}")
-    return value
 
 
 @lru_cache(maxsize=64)
@@ -198,51 +232,124 @@ def _drawn_model(shape: RecipeShape) -> type[Drawn]:
     return model
 
 
+_SIDES: TypeAdapter[Sides] = TypeAdapter(Sides, config=_STRICT)
 _DRAWN: TypeAdapter[Drawn] = TypeAdapter(
     Annotated[Drawn, BeforeValidator(lambda entry: _as_model(entry, _drawn_model))]
 )
 
 
 class _Ground(BaseModel):
-    """Keys of `factory.recipe.Recipe` that drawn shapes depend on."""
+    """Keys of `factory.recipe.Recipe` that drawn shapes and blocks depend on."""
 
     model_config = ConfigDict(extra="ignore", strict=True, allow_inf_nan=False)
 
     seed: Annotated[int, Field(ge=0, lt=2**63)]
-    block_mm: tuple[Positive, Positive, Positive]
+    block_mm: Sides
     border_mm: Natural
     cover_mm: Natural
 
+    def fitting(
+        self, draw: Callable[[], dict[str, Any]], sides: Sides | None, random: np.random.Generator, what: str
+    ) -> dict[str, Any]:
+        """Draw a shape's entry and its block until the one fits in the other.
+
+        Parameters
+        ----------
+        draw : callable
+            Draws the entry of a shape; it need not fit.
+        sides : tuple or None
+            Sides of the block that the shape gets for its own; None if it stands in the recipe's.
+        random : numpy.random.Generator
+        what : str
+            What is drawn, for the ValueError if nothing is found that fits.
+        """
+        fault = None
+        for _ in range(_DRAWS):
+            entry = draw()
+            x, y, z = (_between(side, random) for side in sides or self.block_mm)
+            room = Room(block_mm=(x, y, z), border_mm=self.border_mm, cover_mm=self.cover_mm)
+            fault = room.fault(_SHAPE.validate_python(entry))
+            if fault is None:
+                return entry if sides is None else {**entry, "block_mm": room.block_mm}
+        raise ValueError(f"{what}: none of {_DRAWS} drawn fits; of the last, {fault}")
+
 
 def with_drawn_shapes(recipe: object) -> object:
-    """Replace each entry of a recipe's `shapes` that has a key `draw` by the shapes drawn.
+    """Draw what a recipe leaves open: shapes of entries with the key `draw`, and blocks of their own.
 
-    The random generator is seeded with the recipe's seed and the entry's index.
+    If a side of the recipe's block is an interval, or an entry states a block, every shape has its own
+    afterwards. The random generator is seeded with the recipe's seed and the entry's index.
     """
     shapes = recipe.get("shapes") if isinstance(recipe, Mapping) else None
-    if not isinstance(shapes, tuple) or not any(_is_drawn(entry) for entry in shapes):
+    if not isinstance(shapes, tuple):
         return recipe
     assert isinstance(recipe, Mapping)
+    own_blocks = _is_open(recipe.get("block_mm")) or any(_states(entry, "block_mm") for entry in shapes)
+    if not own_blocks and not any(_states(entry, "draw") for entry in shapes):
+        return recipe
     try:
         ground = _Ground.model_validate(recipe)
     except ValidationError as error:
         raise nested_problems(error) from None
-    room = Room(**ground.model_dump(exclude={"seed"}))
     found: list[object] = []
     for number, entry in enumerate(shapes):
-        if _is_drawn(entry):
-            found += _drawn(entry, number).shapes(room, np.random.default_rng([ground.seed, number]))
+        if not isinstance(entry, Mapping):
+            found.append(entry)  # the model reports it
+            continue
+        random = np.random.default_rng([ground.seed, number])
+        sides = (_own(entry, number) or ground.block_mm) if own_blocks else None
+        if _states(entry, "draw"):
+            found += _drawn_shapes(entry, number, ground, sides, random)
         else:
-            found.append(entry)
+            found.append(_stated_shape(entry, number, ground, sides, random))
     return {**recipe, "shapes": tuple(found)}
 
 
-def _is_drawn(entry: object) -> bool:
-    return isinstance(entry, Mapping) and "draw" in entry
+def _is_open(sides: object) -> bool:
+    return isinstance(sides, tuple) and any(isinstance(side, tuple) for side in sides)
 
 
-def _drawn(entry: Mapping[str, Any], number: int) -> Drawn:
+def _states(entry: object, key: str) -> bool:
+    return isinstance(entry, Mapping) and key in entry
+
+
+def _own(entry: Mapping[str, Any], number: int) -> Sides | None:
+    """Sides of the block that an entry states."""
+    if "block_mm" not in entry:
+        return None
     try:
-        return _DRAWN.validate_python(entry)
+        return _SIDES.validate_python(entry["block_mm"])
+    except ValidationError as error:
+        raise nested_problems(error, under=("shapes", number, "block_mm")) from None
+
+
+def _drawn_shapes(
+    entry: Mapping[str, Any], number: int, ground: _Ground, sides: Sides | None, random: np.random.Generator
+) -> list[dict[str, Any]]:
+    """The entries of drawn shapes."""
+    try:
+        drawn = _DRAWN.validate_python(_without_block(entry))
     except ValidationError as error:
         raise nested_problems(error, under=("shapes", number)) from None
+    return [
+        ground.fitting(partial(drawn.one, name, random), sides, random, f"shapes.{drawn.id}")
+        for name in drawn.names()
+    ]
+
+
+def _stated_shape(
+    entry: Mapping[str, Any], number: int, ground: _Ground, sides: Sides | None, random: np.random.Generator
+) -> Mapping[str, Any]:
+    """The entry of a stated shape; with a block that it fits, if shapes have their own."""
+    if not _is_open(sides):
+        return entry if sides is None else {**entry, "block_mm": sides}
+    lengths = _without_block(entry)
+    try:
+        shape = _SHAPE.validate_python(lengths)
+    except ValidationError as error:
+        raise nested_problems(error, under=("shapes", number)) from None
+    return ground.fitting(lambda: lengths, sides, random, f"shapes.{shape.id}: block_mm")
+
+
+def _without_block(entry: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entry.items() if key != "block_mm"}

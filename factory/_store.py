@@ -14,9 +14,9 @@ import stat
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from factory._errors import InputError, describe_os_error
 from factory._input import validation_sentence
@@ -29,6 +29,10 @@ _OUTSIDE = {MANIFEST, LEDGER}  # the ledger holds wall times: no two runs agree 
 
 class DamagedError(InputError):
     """The files of a dataset are damaged."""
+
+
+_Side = Annotated[float, Field(gt=0)]
+_TWO, _THREE = (Field(min_length=count, max_length=count) for count in (2, 3))
 
 
 class _Lenient(BaseModel):
@@ -50,14 +54,25 @@ class _Protocol(_Lenient):
 
 class _Shape(_Lenient):
     id: str
+    block_mm: Annotated[list[_Side], _THREE] | None = None
 
 
 class _Recipe(_Lenient):
     name: str
+    block_mm: Annotated[list[_Side | Annotated[list[_Side], _TWO]], _THREE]
     rod: _Rod
     protocol: _Protocol
     softness: list[str]
     shapes: list[_Shape]
+
+    @model_validator(mode="after")
+    def _in_blocks(self) -> Self:
+        stated = [shape.block_mm is not None for shape in self.shapes]
+        if any(stated) != all(stated) or not (
+            any(stated) or all(isinstance(s, float) for s in self.block_mm)
+        ):
+            raise ValueError("block_mm: expected three sides, or a block of each shape")
+        return self
 
 
 class _Identity(_Lenient):

@@ -17,6 +17,7 @@ from factory._cli import (
     make_app,
     make_console,
     shown_errors,
+    sides_text,
     size_text,
 )
 from factory._errors import InputError
@@ -173,6 +174,7 @@ def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console
     poke = data.poke(index)
     table = Table(title=f"Poke {index} of {data.path}", show_header=False)
     table.add_row("shape, material level", f"{poke.shape}, {poke.level}")
+    table.add_row("block", f"{sides_text([[1e3 * side for side in poke.block]])} mm")
     lengths = ", ".join(f"{1e3 * v:g}" for v in poke.inclusion.dimensions)
     table.add_row("inclusion", f"{poke.inclusion.kind}, {lengths} mm")
     table.add_row("status", f"{poke.status}: {poke.message}" if poke.message else poke.status)

@@ -137,9 +137,10 @@ class Plan:
         return self.materials[0].law
 
     @property
-    def block(self) -> tuple[float, float, float]:
-        """Size of the block [m]."""
-        return self.pokes[0].scene.block.size
+    def blocks(self) -> tuple[tuple[float, float, float], ...]:
+        """Size of the block of each geometry (shape x material level) [m]."""
+        sizes = [_size(self.recipe, number) for number in range(len(self.recipe.shapes))]
+        return tuple(size for size in sizes for _ in self.materials)
 
 
 def make_plan(
@@ -182,8 +183,8 @@ def make_plan(
                 shared = site < recipe.protocol.shared_sites
                 key = (shape, 0, site) if shared else (shape, 1 + level, site)
                 seed = _seed(recipe.seed, key)
-                scene = _scene(recipe, inclusion, material, seed)
-                _check_path(recipe, len(pokes), scene)
+                scene = _scene(recipe, shape, inclusion, material, seed)
+                _check_path(recipe, shape, len(pokes), scene)
                 pokes.append(
                     PlannedPoke(
                         index=len(pokes),
@@ -339,22 +340,27 @@ def _place(recipe: Recipe, number: int) -> Inclusion:
     """Inclusion of one shape at a random position on the base, at least `border_mm` from the sides."""
     shape = recipe.shapes[number]
     random = np.random.default_rng(_seed(recipe.seed, (number, 2**32 - 1)))
-    room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_mm[:2]]
+    room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_of(shape)[:2]]
     x, y = (float(v) for v in random.uniform(-1, 1, 2) * room)
     angle = float(random.uniform(0, math.pi / 2)) if shape.turned else 0.0
     return shape.standing(x, y, angle)
 
 
-def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) -> Poke:
-    """Draw a poke from a seed: contact point on the top, angle to the normal, heading and course."""
+def _size(recipe: Recipe, number: int) -> tuple[float, float, float]:
+    """Size of the block of one shape [m]."""
+    width, length, height = (side * _MM for side in recipe.block_of(recipe.shapes[number]))
+    return width, length, height
+
+
+def _scene(recipe: Recipe, number: int, inclusion: Inclusion, material: Material, seed: int) -> Poke:
+    """Draw a poke of a shape from a seed: contact point, angle to the normal, heading and course."""
     protocol = recipe.protocol
     random = np.random.default_rng(seed)
-    room = [side / 2 - protocol.margin_mm for side in recipe.block_mm[:2]]
+    room = [side / 2 - protocol.margin_mm for side in recipe.block_of(recipe.shapes[number])[:2]]
     x, y = (float(v) * _MM for v in random.uniform(-1, 1, 2) * room)
     angle = math.radians(float(random.uniform(0, protocol.max_angle_deg)))
     heading = float(random.uniform(0, 2 * math.pi))
     sine = math.sin(angle)
-    width, length, height = (side * _MM for side in recipe.block_mm)
     driven: dict[str, Any] = {
         "depth": protocol.depth_mm * _MM,
         "frame_spacing": protocol.frame_spacing_mm * _MM,
@@ -365,7 +371,7 @@ def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) 
         material=material,
         site=(x, y),
         direction=(sine * math.cos(heading), sine * math.sin(heading), -math.cos(angle)),
-        block=Block(size=(width, length, height), inclusion=inclusion),
+        block=Block(size=_size(recipe, number), inclusion=inclusion),
         rod=Rod(
             radius=recipe.rod.radius_mm * _MM,
             length=recipe.rod.length_mm * _MM,
@@ -378,14 +384,15 @@ def _scene(recipe: Recipe, inclusion: Inclusion, material: Material, seed: int) 
     )
 
 
-def _check_path(recipe: Recipe, index: int, poke: Poke) -> None:
+def _check_path(recipe: Recipe, number: int, index: int, poke: Poke) -> None:
     """Refuse a poke whose indenter, at its full depth, has left the block through a side."""
     end = leaves(poke, poke.direction, deepest(poke))
     if end is not None:
-        protocol = recipe.protocol
+        protocol, shape = recipe.protocol, recipe.shapes[number]
+        whose = str(index) if shape.block_mm is None else f"{index} in the block of {shape.id}"
         raise InputError(
             f"recipe {recipe.name}: protocol.margin_mm: expected contact points so far inside that no"
             f" indenter leaves the block through a side at up to {protocol.max_angle_deg:g} degrees and"
-            f" {protocol.depth_mm:g} mm of depth, got {protocol.margin_mm:g}: that of poke {index} ends at"
+            f" {protocol.depth_mm:g} mm of depth, got {protocol.margin_mm:g}: that of poke {whose} ends at"
             f" x = {end[0] / _MM:.3g}, y = {end[1] / _MM:.3g} mm"
         )

@@ -44,6 +44,8 @@ class PokeData:
         Names of the inclusion and of the material level.
     status, message : str
         Reason why the simulation ended.
+    block : (float, float, float)
+        Sides of the block along x, y and z [m].
     inclusion : Inclusion
         The rigid inclusion [m].
     direction : ndarray, shape (3,)
@@ -77,6 +79,7 @@ class PokeData:
     level: str
     status: str
     message: str
+    block: tuple[float, float, float]
     inclusion: Inclusion
     direction: NDArray[np.float64]
     depth: NDArray[np.float64]
@@ -228,6 +231,26 @@ class Dataset:
                     f"{self.path / name}: has shape {array.shape}, expected {expected[spec.rows]} rows"
                 )
 
+    def block(self, geometry: int) -> tuple[float, float, float]:
+        """Sides of the block of one geometry [m]; DamagedError if the recipe states none."""
+        recipe = self.attributes["identity"]["recipe"]
+        try:
+            shape = recipe["shapes"][geometry // len(self.levels)]
+            width, length, height = (side * 1e-3 for side in shape.get("block_mm", recipe["block_mm"]))
+        except (LookupError, TypeError, ValueError) as error:
+            raise DamagedError(f"{self.path}: block of geometry {geometry}: {one_line(error)}") from None
+        return width, length, height
+
+    def grid_rest(self, geometry: int) -> NDArray[np.float64]:
+        """Rest positions of the grid on the top of one geometry's block [m], shape (32, 32, 3)."""
+        rest = self.table["grid_rest"]
+        return rest if self.specs["grid_rest"].rows == "fixed" else np.asarray(rest[geometry])
+
+    def level_depth(self, geometry: int) -> NDArray[np.float64]:
+        """Depths of the profile levels of one geometry below the rest surface [m], shape (128,)."""
+        depth = self.table["level_depth"]
+        return depth if self.specs["level_depth"].rows == "fixed" else np.asarray(depth[geometry])
+
     def inclusion(self, geometry: int) -> Inclusion:
         """The inclusion of one geometry (a row of `inclusion_*` and `profile`).
 
@@ -270,13 +293,14 @@ class Dataset:
             level=name_of(self.levels, int(table["poke_softness"][index])),
             status=self.status(index),
             message=self.message(index),
+            block=self.block(geometry),
             inclusion=self.inclusion(geometry),
             direction=table["direction"][index],
             depth=depth,
             rod_tip=table["rod_tip"][frames],
             rod_force=table["rod_force"][frames],
             base_force=table["base_force"][frames],
-            grid=table["grid_rest"] + self.read("grid_displacement", frames),
+            grid=self.grid_rest(geometry) + self.read("grid_displacement", frames),
             surface=rest + moved.reshape(len(depth), len(rest), 3),
             surface_rest=rest,
             triangles=self.read("surface_triangle", self.rows(index, "triangle")),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, cast
 
 from pydantic import (
     BeforeValidator,
@@ -21,7 +21,17 @@ from factory._bundled import recipe_names, shipped_folder
 from factory._course import Piece, check_pieces
 from factory._errors import InputError
 from factory._input import Strict, read_yaml, validation_sentence
-from factory._shapes import Name, Natural, Positive, Room, Shape, of_its_kind, with_drawn_shapes
+from factory._shapes import (
+    Name,
+    Natural,
+    Positive,
+    Room,
+    Shape,
+    Sides,
+    Size,
+    of_its_kind,
+    with_drawn_shapes,
+)
 
 # As experiments name materials, since `calibration.fit` names a card after its material.
 Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
@@ -111,8 +121,8 @@ class Recipe(Strict):
     name, description : str
     seed : int
         Seed of all positions, directions and rotations.
-    block_mm : (float, float, float)
-        Sides of the block.
+    block_mm : tuple of float or (float, float), length 3
+        Sides of the block. Of a side that is an interval, each shape has one of its own (`block_of`).
     rod : RodRecipe
     friction : float
         Coulomb coefficient between indenter and block.
@@ -132,7 +142,7 @@ class Recipe(Strict):
     name: Name
     description: str
     seed: Annotated[int, Field(ge=0, lt=2**63)]
-    block_mm: tuple[Positive, Positive, Positive]
+    block_mm: Sides
     rod: RodRecipe
     friction: Annotated[float, Field(ge=0, le=10)]
     protocol: Protocol
@@ -154,13 +164,20 @@ class Recipe(Strict):
         for label, names in (("softness", self.levels), ("shapes", tuple(s.id for s in self.shapes))):
             if len(set(names)) < len(names):
                 raise ValueError(f"{label}: expected different names")
-        _check_protocol(self)
-        room = Room(block_mm=self.block_mm, border_mm=self.border_mm, cover_mm=self.cover_mm)
         for shape in self.shapes:
+            _check_protocol(self, shape)
+        for shape in self.shapes:
+            room = Room(block_mm=self.block_of(shape), border_mm=self.border_mm, cover_mm=self.cover_mm)
             fault = room.fault(shape)
             if fault is not None:
                 raise ValueError(f"shapes.{shape.id}: {fault}")
         return self
+
+    def block_of(self, shape: Shape) -> Size:
+        """Sides of the block in which a shape stands [mm]: its own, or the recipe's."""
+        if shape.block_mm is not None:
+            return shape.block_mm
+        return cast(Size, self.block_mm)  # of an interval, every shape has its own (`with_drawn_shapes`)
 
     @property
     def pokes_each(self) -> int:
@@ -181,15 +198,16 @@ class Recipe(Strict):
             ) from None
 
 
-def _check_protocol(recipe: Recipe) -> None:
-    protocol, height = recipe.protocol, recipe.block_mm[2]
+def _check_protocol(recipe: Recipe, shape: Shape) -> None:
+    protocol, (*sides, height) = recipe.protocol, recipe.block_of(shape)
+    whose = "" if shape.block_mm is None else f"shapes.{shape.id}: "
     if protocol.depth_mm >= height:
         raise ValueError(
-            f"protocol.depth_mm: expected less than the block's height of {height:g} mm, "
+            f"{whose}protocol.depth_mm: expected less than the block's height of {height:g} mm, "
             f"got {protocol.depth_mm:g}"
         )
-    if 2 * protocol.margin_mm >= min(recipe.block_mm[:2]):
-        raise ValueError("protocol.margin_mm: expected less than half of the block's sides")
+    if 2 * protocol.margin_mm >= min(sides):
+        raise ValueError(f"{whose}protocol.margin_mm: expected less than half of the block's sides")
     footprint = recipe.rod.radius_mm / math.cos(math.radians(protocol.max_angle_deg))
     if protocol.margin_mm < footprint:
         raise ValueError(

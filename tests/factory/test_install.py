@@ -84,7 +84,7 @@ if __name__ == "__main__":
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
-        "12 ['paper', 'quick', 'sample', 'surrogate', 'surrogate-law', 'timed', 'wide'] 4 Dataset("
+        "12 ['blocks', 'paper', 'quick', 'sample', 'surrogate', 'surrogate-law', 'timed', 'wide'] 4 Dataset("
     )
     done = subprocess.run(
         [sys.executable, "-m", "factory.build", "--model", "ogden", "--recipe", "quick", "--dry-run"],

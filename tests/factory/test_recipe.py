@@ -312,9 +312,10 @@ def test_junk_in_any_place_is_valid_or_named(tmp_path: Path, where: tuple[Any, .
 
 
 def test_recipes_by_name() -> None:
-    assert recipe_names() == ["paper", "quick", "sample", "surrogate", "surrogate-law", "timed", "wide"]
+    names = ["blocks", "paper", "quick", "sample", "surrogate", "surrogate-law", "timed", "wide"]
+    assert recipe_names() == names
     with pytest.raises(
-        InputError, match="--recipe papper: expected a path of a YAML file or one of: paper, q"
+        InputError, match="--recipe papper: expected a path of a YAML file or one of: blocks, paper, q"
     ):
         load_recipe("papper")
     with pytest.raises(InputError, match=r"cannot read nowhere\.yaml: No such file"):

@@ -1,0 +1,413 @@
+"""Recipes whose shapes have blocks of their own: drawn and stated sides, and the store built from them."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import re
+import shutil
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+import yaml
+import zarr
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+import factory.card
+from factory import _assembly, _build, _figures, open_dataset, verify_dataset
+from factory._build import build_dataset
+from factory._errors import InputError
+from factory._execution import run_poke
+from factory._figures import draw_preview
+from factory._report import Trace
+from factory._sampling import grid_points, level_depths, profiles
+from factory._schema import SPECS
+from factory._store import write_manifest
+from factory.build import app as build_app
+from factory.inspect import app as inspect_app
+from factory.plan import make_plan
+from factory.recipe import Recipe, load_recipe
+from factory.release import app as release_app
+from factory.verify import app as verify_app
+from tests.factory.conftest import TINY, Builder, digest, run_app
+
+SIDES = [[60, 90], [60, 90], [20, 34]]
+CUBES = {"kind": "cube", "id": "cube", "draw": 15, "side_mm": [6, 24]}
+STATED = {"kind": "sphere", "id": "ball", "radius_mm": 11}
+
+# simulated in seconds by tisim itself: a drawn shape, a stated one, and one that states its block
+SMALL = """
+name: small
+description: three small blocks
+seed: 5
+block_mm: [[40, 60], [40, 60], [14, 22]]
+rod: {radius_mm: 2.5, length_mm: 40, tip: flat, edge_radius_mm: 1}
+friction: 0.6
+protocol: {shared_sites: 1, own_sites: 0, margin_mm: 12, max_angle_deg: 20, depth_mm: 1, frame_spacing_mm: 1}
+softness: [S0, S1]
+border_mm: 6
+cover_mm: 6
+refinement: 0.5
+shapes:
+  - {kind: cube, id: cube, draw: 1, side_mm: [6, 9]}
+  - {kind: sphere, id: ball, radius_mm: 4, sunk_mm: 1}
+  - {kind: cylinder, id: mine, radius_mm: 5, height_mm: 8, block_mm: [44, 58, 17.5]}
+"""
+
+
+def read(folder: Path, *shapes: dict[str, Any], **changed: object) -> Recipe:
+    keys = {**yaml.safe_load(TINY), "block_mm": SIDES, "cover_mm": 3, "shapes": list(shapes)}
+    keys["protocol"] = {**keys["protocol"], "depth_mm": 12}
+    path = folder / "recipe.yaml"
+    path.write_text(yaml.safe_dump({**keys, **changed}))
+    return load_recipe(path)
+
+
+def sides(recipe: Recipe) -> np.ndarray[Any, Any]:
+    return np.array([recipe.block_of(shape) for shape in recipe.shapes])
+
+
+# --- recipes
+
+
+def test_each_shape_has_a_block_between_the_limits_that_it_fits(tmp_path: Path) -> None:
+    """Drawn shapes and stated ones."""
+    recipe = read(tmp_path, CUBES, *({**STATED, "id": f"ball-{k}"} for k in range(5)))
+    found = sides(recipe)
+    low, high = np.array(SIDES).T
+    assert (found >= low).all()
+    assert (found <= high).all()
+    assert (np.ptp(found, axis=0) > 0.6 * (high - low)).all()
+    assert len(np.unique(found[:, 2])) == 20
+    np.testing.assert_array_equal(found, found.round(2))
+    tops, reach = (np.array([getattr(s, key) for s in recipe.shapes]) for key in ("top_mm", "reach_mm"))
+    assert (tops + 3 <= found[:, 2]).all()
+    assert (reach + 10 <= found[:, :2].min(axis=1) / 2).all()
+    assert (tops + 3 > 20).sum() > 5, "some would not fit in every block"
+
+
+def test_the_draws_depend_on_the_seed_and_the_entry_alone(tmp_path: Path) -> None:
+    first = read(tmp_path, CUBES, STATED).shapes
+    assert read(tmp_path, CUBES, STATED, friction=0.1).shapes == first
+    assert not set(read(tmp_path, CUBES, STATED, seed=4).shapes) & set(first)
+    assert read(tmp_path, CUBES, {**STATED, "id": "other"}).shapes[:15] == first[:15]
+
+
+def test_sides_resolve_into_the_identity(tmp_path: Path) -> None:
+    recipe = read(tmp_path, {**CUBES, "draw": 2}, {**STATED, "block_mm": [80, 70, 30]})
+    found = make_plan(recipe, "ogden").identity["recipe"]
+    assert found["block_mm"] == SIDES
+    assert [shape["block_mm"] for shape in found["shapes"]] == sides(recipe).tolist()
+    assert found["shapes"][2]["block_mm"] == [80, 70, 30]
+    # afterwards nothing is drawn any more
+    assert Recipe.model_validate(recipe.model_dump(by_alias=True)) == recipe
+    assert recipe.with_levels(["S1"]).shapes == recipe.shapes
+
+
+def test_a_block_of_its_own_gives_all_shapes_one(tmp_path: Path) -> None:
+    recipe = read(tmp_path, CUBES, {**STATED, "block_mm": [80, 70, [26, 30]]}, block_mm=[70, 70, 30])
+    assert {shape.block_mm for shape in recipe.shapes[:-1]} == {(70, 70, 30)}
+    own = recipe.shapes[-1].block_mm
+    assert own is not None
+    assert own[:2] == (80, 70)
+    assert 26 <= own[2] <= 30
+
+
+@pytest.mark.parametrize(
+    ("name", "recipe", "scenes"),
+    [
+        ("paper", "b347ef9963b9f2e8", "0e7ba4eab094389e"),
+        ("wide", "53e8a89951c444c7", "572bceb5a7c30ac2"),
+    ],
+)
+def test_recipes_of_one_block_stay_what_they_were(name: str, recipe: str, scenes: str) -> None:
+    """Digests of before shapes could have their own blocks."""
+    plan = make_plan(load_recipe(name), "ogden")
+    text = json.dumps(plan.identity["recipe"], sort_keys=True, separators=(",", ":"))
+    assert hashlib.sha256(text.encode()).hexdigest().startswith(recipe)
+    drawn = [
+        (*p.scene.site, *p.scene.direction, *plan.inclusions[p.shape].centre, p.seed) for p in plan.pokes
+    ]
+    text = repr(np.round(np.array(drawn, dtype=float), 9).tolist())
+    assert hashlib.sha256(text.encode()).hexdigest().startswith(scenes)
+
+
+def test_the_blocks_recipe() -> None:
+    plan = make_plan(load_recipe("blocks"), "ogden")  # refused if a path left its block
+    assert len(plan.recipe.shapes) == 36
+    assert len(plan.pokes) == 576
+    assert sum(not poke.derived for poke in plan.pokes) == 288
+    found = sides(plan.recipe)
+    assert found.min(axis=0) == pytest.approx([70, 70, 24], abs=1.5)
+    assert found.max(axis=0) == pytest.approx([130, 130, 40], abs=4)
+    covers = found[:, 2] - [shape.top_mm for shape in plan.recipe.shapes]
+    assert 6 <= covers.min() < 7
+    assert covers.max() > 25
+    done = run_app(build_app, "--model", "ogden", "--recipe", "blocks", "--dry-run")
+    assert done.exit_code == 0, done.output
+    assert "70.7 to 129.81 x 70.12 to 126.93 x 25.19 to 39.52 mm" in done.stdout
+
+
+def test_inclusions_and_contact_points_are_within_their_block(tmp_path: Path) -> None:
+    plan = make_plan(read(tmp_path, CUBES, STATED), "ogden")
+    for poke in plan.pokes:
+        size = np.array(poke.scene.block.size)
+        np.testing.assert_allclose(size, plan.blocks[poke.geometry], rtol=0, atol=0)
+        np.testing.assert_allclose(size * 1e3, plan.recipe.block_of(plan.recipe.shapes[poke.shape]))
+        assert (np.abs(poke.scene.site) <= size[:2] / 2 - 0.020).all()
+        low, high = plan.inclusions[poke.shape].bounds
+        assert (np.abs([low, high])[:, :2] <= size[:2] / 2 - 0.010 + 1e-12).all()
+
+
+def test_draws_fill_the_block_that_they_are_in(tmp_path: Path) -> None:
+    """A larger block spreads the inclusion and the contact points of its shape alone."""
+    other = {"kind": "cube", "id": "other", "side_mm": 8, "block_mm": [70, 70, 30]}
+    one, two = (
+        make_plan(read(tmp_path, other, {**STATED, "block_mm": [*wide, 30]}), "ogden")
+        for wide in ([60, 60], [90, 80])
+    )
+    reach = one.recipe.shapes[1].reach_mm
+    room, sites = (np.array([45, 40]) - gap for gap in (10 + reach, 20))
+    grown = room / (30 - 10 - reach)
+    np.testing.assert_allclose(two.inclusions[1].centre[:2], grown * one.inclusions[1].centre[:2])
+    for first, second in zip(one.pokes, two.pokes, strict=True):
+        factor = sites / (30 - 20) if first.shape else 1.0
+        np.testing.assert_allclose(second.scene.site, factor * np.array(first.scene.site))
+    assert one.inclusions[0] == two.inclusions[0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"block_mm": [[90, 60], 60, 30]}, "key block_mm.0: expected the smaller of two lengths first"),
+        ({"block_mm": [60, [60, 70, 80], 30]}, "key block_mm.1: tuple should have at most 2 items"),
+        ({"block_mm": [60, [60], 30]}, "key block_mm.1.1: this key is missing"),
+        ({"block_mm": [60, 60, [0, 30]]}, "key block_mm.2.0: input should be greater than 0, got 0"),
+        ({"block_mm": [60, "wide", [20, 30]]}, "key block_mm.1: input should be a valid number, got 'wide'"),
+        ({"block_mm": [60, [60, 70]]}, "key block_mm.2: this key is missing"),
+        ({"block_mm": [[60, 70], 60, [14, 16]]}, "shapes.cube: none of 1000 drawn fits; of the last, its"),
+        (
+            {"shapes": [{**STATED, "radius_mm": 17}]},
+            "shapes.ball: block_mm: none of 1000 drawn fits; of the last, its top at 34 mm leaves less",
+        ),
+        ({"shapes": [{**STATED, "block_mm": [60, 60, 24]}]}, "shapes.ball: its top at 22 mm leaves less"),
+        ({"shapes": [{**STATED, "block_mm": [60, 60]}]}, "key shapes.0.block_mm.2: this key is missing"),
+        ({"shapes": [{**STATED, "block_mm": None}]}, "key shapes.0.block_mm: input should be a valid tuple"),
+        ({"shapes": [{**STATED, "radius_mm": -1}]}, "key shapes.0.radius_mm: input should be greater than 0"),
+        ({"shapes": [{**CUBES, "block_mm": [60, -1, 30]}]}, "key shapes.0.block_mm.1: input should be"),
+        ({"border_mm": -1}, "key border_mm: input should be greater than or equal to 0"),
+        (
+            {"shapes": [{**STATED, "block_mm": [60, 38, 30]}], "border_mm": 1},
+            "shapes.ball: protocol.margin_mm: expected less than half of the block's sides",
+        ),
+        (
+            {"shapes": [{"kind": "cube", "id": "low", "side_mm": 6, "block_mm": [60, 60, 10]}]},
+            "shapes.low: protocol.depth_mm: expected less than the block's height of 10 mm, got 12",
+        ),
+    ],
+)  # fmt: skip
+def test_bad_blocks_are_one_sentence(tmp_path: Path, changed: dict[str, Any], sentence: str) -> None:
+    shapes = changed.pop("shapes", [{**CUBES, "side_mm": [15, 24]}])
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, *shapes, **changed)
+    assert sentence in str(caught.value)
+    assert "recipe.yaml: " in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_indenter_that_leaves_its_block_is_refused_by_the_shapes_name(tmp_path: Path) -> None:
+    recipe = read(tmp_path, {**STATED, "block_mm": [60, 60, 30]})
+    protocol = recipe.protocol.model_copy(update={"margin_mm": 4.0, "own_sites": 40})
+    near = recipe.model_copy(update={"protocol": protocol})
+    with pytest.raises(InputError, match=r"got 4: that of poke \d+ in the block of ball ends at x = "):
+        make_plan(near, "ogden")
+
+
+# --- the store
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three shapes at two material levels, built by tisim."""
+    folder = tmp_path_factory.mktemp("blocks")
+    (folder / "small.yaml").write_text(SMALL)
+    plan = make_plan(load_recipe(folder / "small.yaml"), "ogden")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_build, "run_local", lambda pokes, **_: (run_poke(poke) for poke in pokes))
+        build_dataset(plan, folder / "store.zarr", workers=1)
+    return folder / "store.zarr"
+
+
+def test_the_arrays_of_a_geometry_are_those_of_its_mesh(small: Path) -> None:
+    store = zarr.open_group(small, mode="r")
+    grid, level = store["grid_rest"], store["level_depth"]
+    assert (grid.shape, grid.dtype, grid.attrs["units"]) == ((6, 32, 32, 3), np.float64, "m")
+    assert (level.shape, level.dtype, level.attrs["units"]) == ((6, 128), np.float64, "m")
+    stated = store.attrs["identity"]["recipe"]["shapes"]
+    start, count = store["node_start"][:], store["node_count"][:]
+    assert len(start) == 6
+    for poke, geometry in enumerate(store["poke_geometry"][:]):
+        rest = store["surface_rest"][start[poke] : start[poke] + count[poke]]
+        block = rest.max(axis=0) - rest.min(axis=0)
+        np.testing.assert_allclose(block, np.array(stated[geometry // 2]["block_mm"]) * 1e-3, atol=1e-12)
+        np.testing.assert_allclose(rest.max(axis=0), block * [0.5, 0.5, 1.0], atol=1e-12)
+        np.testing.assert_allclose(grid[geometry], grid_points(tuple(block)), atol=1e-12)
+        np.testing.assert_allclose(level[geometry], level_depths(block[2]), atol=1e-12)
+    assert len(np.unique(level[:, 0])) == 3
+    assert stated[2]["block_mm"] == [44, 58, 17.5]
+
+
+def test_it_is_read_poke_by_poke(small: Path) -> None:
+    data = open_dataset(small)
+    for index in range(data.n_pokes):
+        poke, geometry = data.poke(index), int(data.table["poke_geometry"][index])
+        np.testing.assert_allclose(poke.block, np.ptp(poke.surface_rest, axis=0), atol=1e-12)
+        moved = data.read("grid_displacement", data.rows(index, "frame"))
+        np.testing.assert_array_equal(poke.grid, data.table["grid_rest"][geometry] + moved)
+        code = round(255 * [0.8, 0.0][geometry % 2]) / 255
+        expected = profiles(grid_points(poke.block), poke.block[2], poke.inclusion, code)
+        np.testing.assert_array_equal(poke.profile, expected)
+        assert (expected == 255).any()
+
+
+def test_xarray_opens_it(small: Path) -> None:
+    data = xarray.open_zarr(small)
+    assert set(data.data_vars) >= set(SPECS)
+    assert data.grid_rest.dims == ("geometry", "grid_row", "grid_column", "axis")
+    assert data.level_depth.dims == ("geometry", "level")
+    of_poke = data.grid_rest[data.poke_geometry]
+    assert float(of_poke[-1, ..., 2].max()) == pytest.approx(0.0175)
+
+
+def test_verify_and_inspect_know_its_blocks(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    done = run_app(verify_app, small, "--assembly", "--workers", 1)
+    assert done.exit_code == 0, done.output
+    assert "6 pokes, 6 frames: no fault" in done.output
+    assert "equilibrium by assembly of 3 pokes, 3 frames: 0 faults" in done.output
+    assert run_app(inspect_app, small, "--arrays").exit_code == 0
+    done = run_app(inspect_app, small, "--poke", 5, "--picture", tmp_path / "poke.png")
+    assert done.exit_code == 0, done.output
+    assert "44 x 58 x 17.5 mm" in done.stdout
+    assert (tmp_path / "poke.png").stat().st_size > 10_000
+
+
+def test_the_card_describes_them_and_its_snippet_runs(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = run_app(factory.card.app, small, "--out", tmp_path / "card")
+    assert done.exit_code == 0, done.output
+    page = (tmp_path / "card" / "card.md").read_text(encoding="utf-8")
+    found = np.array([s["block_mm"] for s in open_dataset(small).attributes["identity"]["recipe"]["shapes"]])
+    spans = " x ".join(f"{low:g} to {high:g}" for low, high in zip(found.min(0), found.max(0), strict=True))
+    assert f"- Block: {spans} mm, one for each shape, its base and the inclusion fixed." in page
+    assert "| `mine` | cylinder | radius 5, height 8 | 44 x 58 x 17.5 |" in page
+    (snippet,) = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(small.parent)
+    space: dict[str, Any] = {"__name__": "__main__"}
+    with redirect_stdout(io.StringIO()):
+        exec(snippet, space)
+    np.testing.assert_array_equal(space["surface"], open_dataset(small).poke(space["poke"]).grid)
+
+
+def test_its_zip_is_the_same_dataset(small: Path, tmp_path: Path) -> None:
+    done = run_app(release_app, small, "--out", tmp_path / "store.zarr.zip")
+    assert done.exit_code == 0, done.output
+    assert not verify_dataset(tmp_path / "store.zarr.zip").total
+    one, two = (open_dataset(path).poke(3) for path in (small, tmp_path / "store.zarr.zip"))
+    np.testing.assert_array_equal(one.grid, two.grid)
+
+
+def _scale(name: str, row: int, factor: float) -> Callable[[Path], None]:
+    def change(store: Path) -> None:
+        array = zarr.open_group(store, mode="r+")[name]
+        array[row] = array[row] * factor
+
+    return change
+
+
+def _swap(store: Path) -> None:
+    array = zarr.open_group(store, mode="r+")["grid_rest"]
+    array[...] = np.roll(array[...], 2, axis=0)
+
+
+def _stated(store: Path) -> None:
+    metadata = json.loads((store / "zarr.json").read_text())
+    metadata["attributes"]["identity"]["recipe"]["shapes"][1]["block_mm"][0] += 1.0
+    (store / "zarr.json").write_text(json.dumps(metadata))
+
+
+@pytest.mark.parametrize(
+    ("change", "check", "faults"),
+    [
+        (_scale("grid_rest", 2, 1.01), "blocks", ["geometry 2: grid_rest is not that of its block"]),
+        (_scale("level_depth", 3, 1.01), "blocks", ["geometry 3: level_depth is not that of its block"]),
+        (_swap, "inclusions", ["geometry 0: the profile's rigid part is not the box described"]),
+        (
+            _stated,
+            "blocks",
+            ["geometry 2: grid_rest", "poke 2: its surface at rest is not that of its block"],
+        ),
+    ],
+)
+def test_verify_finds_what_is_of_another_block(
+    change: Callable[[Path], None], check: str, faults: list[str], small: Path, tmp_path: Path
+) -> None:
+    store = Path(shutil.copytree(small, tmp_path / "a.zarr"))
+    change(store)
+    write_manifest(store)
+    found = verify_dataset(store).faults[check]
+    for fault in faults:
+        assert any(one.startswith(fault) for one in found), found
+
+
+def test_a_shape_without_its_block_is_named(small: Path, tmp_path: Path) -> None:
+    store = Path(shutil.copytree(small, tmp_path / "a.zarr"))
+    metadata = json.loads((store / "zarr.json").read_text())
+    del metadata["attributes"]["identity"]["recipe"]["shapes"][1]["block_mm"]
+    (store / "zarr.json").write_text(json.dumps(metadata))
+    done = run_app(inspect_app, store)
+    assert done.exit_code == 2
+    assert "block_mm: expected three sides, or a block of each shape" in done.stderr
+
+
+def test_it_is_built_again_byte_by_byte(tmp_path: Path, standin_build: Builder) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    digests = []
+    for name in ("a.zarr", "b.zarr"):
+        plan = make_plan(load_recipe(tmp_path / "small.yaml"), "ogden")
+        standin_build(plan, tmp_path / name)
+        digests.append(digest(tmp_path / name))
+    assert digests[0] == digests[1]
+
+
+def test_the_preview_shows_every_block(tmp_path: Path) -> None:
+    """The map of the top is that of the deepest poke's own block."""
+    (tmp_path / "small.yaml").write_text(SMALL)
+    plan = make_plan(load_recipe(tmp_path / "small.yaml"), "ogden")
+    ramp = np.linspace(1e-4, 1e-3, 5)
+    traces = {
+        poke.index: Trace(depth=ramp * (1 + poke.index), force=ramp, grid=np.zeros((32, 32, 3), np.float32))
+        for poke in plan.pokes
+    }
+    draw_preview(plan, traces, tmp_path / "preview.png")
+    assert (tmp_path / "preview.png").stat().st_size > 10_000
+    figure = Figure()
+    sites, top = figure.subplots(1, 2)
+    _figures._sites(plan, traces, sites)
+    half = 1e3 * np.array(plan.blocks)[:, :2] / 2
+    assert (sites.get_xlim()[1], sites.get_ylim()[1]) == pytest.approx(half.max(axis=0))
+    outlines = [patch.get_bbox().max for patch in sites.patches if isinstance(patch, Rectangle)]
+    np.testing.assert_allclose(sorted(map(tuple, outlines)), np.unique(half, axis=0))
+    _figures._top(plan, traces, top, figure)
+    assert (top.get_xlim()[1], top.get_ylim()[1]) == pytest.approx((22, 29))
