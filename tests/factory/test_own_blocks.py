@@ -37,6 +37,8 @@ from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe
 from factory.release import app as release_app
 from factory.verify import app as verify_app
+from learn.data import open_store
+from learn.evaluation.predictions import interpolation_error_mm
 from tests.factory.conftest import TINY, Builder, digest, run_app
 
 SIDES = [[60, 90], [60, 90], [20, 34]]
@@ -276,6 +278,21 @@ def test_it_is_read_poke_by_poke(small: Path) -> None:
         expected = profiles(grid_points(poke.block), poke.block[2], poke.inclusion, code)
         np.testing.assert_array_equal(poke.profile, expected)
         assert (expected == 255).any()
+
+
+def test_learn_reads_the_block_of_each_poke(small: Path) -> None:
+    """The surrogate's reader, which shares no code with the factory, finds the same blocks and fields."""
+    store, written = open_store(small), open_dataset(small)
+    assert len(store.setups) == 3
+    for poke in range(store.pokes):
+        setup, block = store.setup_of(poke), written.block(int(store.geometry[poke]))
+        np.testing.assert_allclose(setup.block_size, block, rtol=1e-12)
+        np.testing.assert_allclose(setup.with_block(block).points, setup.points, atol=1e-15)
+        site = written.table["site"][poke]
+        np.testing.assert_allclose(setup.contact_site(store.path_start[poke], store.direction[poke]), site)
+        np.testing.assert_allclose(setup.first_touch(site, store.direction[poke]), store.path_start[poke])
+    rows = np.arange(store.frames)
+    assert interpolation_error_mm(store, rows) < 1e-4
 
 
 def test_xarray_opens_it(small: Path) -> None:
