@@ -70,6 +70,7 @@ LONG = (
     "calibration/diagnosis/test_diag_early_stop.py",
     "learn/test_training.py",
     "learn/test_pokes.py",
+    "learn/test_blocks.py",
     "factory/test_damage_store.py",
     "tisim/test_simulate_batch.py",
     "tisim/test_laws.py",
