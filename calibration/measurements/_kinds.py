@@ -167,6 +167,21 @@ def contribution(
     return Contribution(objectives=(ModelObjective(model, name=name),), left_out=tuple(model.left_out()))
 
 
+def models(
+    kind: Kind, own: Experiment, context: FitContext
+) -> tuple[Sequence[MeasurementModel], Sequence[str]]:
+    """Models by which a fit compares an experiment of a kind's trials of one material, and what they leave
+    out: a prediction compares the same. The kind's own model, where its objectives have none.
+    """
+    found = contribution(kind, own, context)
+    assert found is not None, "every kind has a likelihood"
+    mine = [o.model for o in found.objectives if isinstance(o, ModelObjective)]
+    if not mine:
+        baseline = Baseline.of_law(own.trials, context.law)
+        mine = [build(kind, own, baseline=baseline, workers=context.workers)]
+    return mine, found.left_out
+
+
 def _late(module: str, name: str) -> Callable[[], Any]:
     """Function that imports a name of a module of `calibration.measurements` when it is called."""
     return lambda: getattr(import_module(f"calibration.measurements.{module}"), name)
