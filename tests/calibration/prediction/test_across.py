@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,12 @@ from _folders import beam_entry, marker_columns, write_experiment
 
 import calibration
 from benchmarks.blind.beams.model import Beam
+from benchmarks.blind.release import Truth, write_bars
 from benchmarks.blind.timed.cases import Case, CouponTest, HungBeam, write
 from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony, Solid
+from calibration.measurements._kinds import kind_of
+from calibration.prediction.trials import _same_model
 
 G = 3e4
 TERMS = tuple(10.0 ** (k / 2) for k in range(-1, 6))
@@ -80,6 +84,18 @@ def test_what_is_predicted_of_a_beam_at_rest_is_what_its_fit_leaves(tmp_path: Pa
     assert off[0] < 0.0 < off[1]
     assert fitted.points == 6
     assert drop(fitted.shear_modulus) == pytest.approx(4.15e-3, rel=0.06)
+
+
+def test_a_beam_at_rest_is_no_trial_of_the_model_of_vibrations(tmp_path: Path) -> None:
+    """So it is predicted by the cards of the beams that swing."""
+    swinging = calibration.read_experiment(write_bars(tmp_path / "swinging", Truth(), hung=(0.0,)))
+    (one,) = swinging.trials
+    (other,) = calibration.read_experiment(marked(tmp_path / "bar", [-4.0])).trials
+    still = replace(swinging, trials=(replace(other, material=one.material),))
+    kind = kind_of(swinging, "release")
+    assert _same_model(kind, swinging)
+    assert not _same_model(kind, still)
+    assert not _same_model(kind, replace(still, trials=(one, *still.trials)))
 
 
 def drop(shear: float) -> float:
