@@ -91,7 +91,7 @@ def plan_fit(experiment: str | Path | Experiment, request: FitRequest) -> FitPla
         )
     cards = _starts(request.start, wanted, objective)
     parts.check(data, wanted, specs, cards)
-    setup = _rig(request.rig, data, objective, wanted)
+    setup = known_rig(request.rig, data, wanted, objective=objective)
     folder = Path(request.out)
     options = FitOptions(
         cma=CmaOptions(
@@ -164,8 +164,11 @@ def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
     return list(dict.fromkeys(wanted))
 
 
-def _rig(path: str | Path | None, data: Experiment, objective: str, materials: list[str]) -> Rig | None:
-    """The rig's corrections; InputError where these fits cannot be corrected by it."""
+def known_rig(
+    path: str | Path | None, data: Experiment, materials: Sequence[str], *, objective: str = "likelihood"
+) -> Rig | None:
+    """The corrections of a rig file; None without a file. InputError where fits of these materials cannot be
+    corrected by it."""
     if path is None:
         return None
     if objective != "likelihood":

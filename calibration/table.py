@@ -30,6 +30,10 @@ Fits of your own, no new ones:
 
   python -m calibration.table datasets/measured/bench/clean --fits fits/of-today --no-run --model ogden
 
+Fits that calibration.fit corrected for what is known of rig and camera:
+
+  python -m calibration.table datasets/measured/bench/grips-short --fits on-rig --rig diagnosed/cards/rig.yaml
+
 Exit codes: 0 written, 1 written and some law has no figures, 2 bad input, 130 stopped by Ctrl-C.
 """
 
@@ -42,6 +46,12 @@ def main(
         typer.Option(help="Folder that calibration.fit wrote. Default: calibrations/EXPERIMENT."),
     ] = None,
     model: Laws = "all",
+    rig: Annotated[
+        Path | None,
+        typer.Option(
+            help="rig.yaml with which the fits were made: beams and photographs are simulated on this rig."
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of table.csv and table.md. Default: that of the fits.")
     ] = None,
@@ -57,18 +67,21 @@ def main(
         from rich.progress import track
 
         from calibration.api import read_experiment
-        from calibration.fit_plan import law_names, processes
+        from calibration.fit_plan import known_rig, law_names, processes
+        from calibration.study import OnSetup
         from calibration.study.paper_table import fits_folder, measured, read_fit, row
 
         data = read_experiment(experiment)
         names = law_names(model)
         materials = _materials(data, experiment)
+        setup = known_rig(rig, data, materials)
+        data = OnSetup.of(data, setup)
         home = fits or Path("calibrations") / experiment.resolve().name
         folder = fits_folder(home) if fits else home / "fits"
         found = {(law, m): read_fit(folder, data, m, law) for law in names for m in materials}
         bodies = {m: measured(data, m) for m in materials}
         if run_missing:
-            _fill(found, data, folder, processes(workers), console)
+            _fill(found, data, folder, processes(workers), console, rig=rig)
         rows = [
             row(law, fit, data, m, bodies[m], workers=workers)
             for (law, m), fit in track(
@@ -77,7 +90,8 @@ def main(
         ]
         target = out or home
         target.mkdir(parents=True, exist_ok=True)
-        _write(rows, target, console, command=_command(experiment, fits, model, out, run_missing), data=data)
+        said = _command(experiment, fits, model, rig, out, run_missing)
+        _write(rows, target, console, command=said, data=data)
     raise typer.Exit(0 if all(r.measures for r in rows) else 1)
 
 
@@ -109,12 +123,21 @@ def _fill(
     folder: Path,
     workers: int,
     console: Console,
+    *,
+    rig: Path | None,
 ) -> None:
-    """Make the fits that are missing, as calibration.fit makes them without options."""
-    from calibration.study import run, tasks_for
+    """Make the fits that are missing, as calibration.fit makes them without other options than --rig."""
+    from calibration.study import OnSetup, run, tasks_for
 
     missing = [key for key, fit in found.items() if fit is None]
-    tasks = [t for law, m in missing for t in tasks_for(data, law_names=[law], materials=[m], folder=folder)]
+    setup = data.setup if isinstance(data, OnSetup) else None
+    tasks = [
+        task
+        for law, m in missing
+        for task in tasks_for(
+            data, law_names=[law], materials=[m], folder=folder, setup=setup, setup_file=str(rig or "")
+        )
+    ]
     if not tasks:
         return
     with FitScreen(console) as screen:
@@ -123,8 +146,9 @@ def _fill(
 
 
 def _write(rows: list[Row], target: Path, console: Console, *, command: str, data: Experiment) -> None:
+    from calibration.study import OnSetup
     from calibration.study.paper_table import averages
-    from calibration.study.paper_table_files import rich_table, write_csv, write_markdown
+    from calibration.study.paper_table_files import AS_STATED, rich_table, write_csv, write_markdown
 
     whole = [*rows, *averages(rows)]
     order = list(dict.fromkeys(r.law for r in rows))
@@ -132,14 +156,18 @@ def _write(rows: list[Row], target: Path, console: Console, *, command: str, dat
     console.print(rich_table(whole))
     write_csv(target / "table.csv", whole)
     source = f"Experiment {data.name!r} (sha256 {data.digest[:16]})."
-    write_markdown(target / "table.md", whole, command=command, source=source)
+    setup = f"beams and photographs {data.setup.sentence}" if isinstance(data, OnSetup) else AS_STATED
+    write_markdown(target / "table.md", whole, command=command, source=source, setup=setup)
     console.print(f"{target / 'table.csv'}, {target / 'table.md'}", soft_wrap=True)
 
 
-def _command(experiment: Path, fits: Path | None, model: str, out: Path | None, run_missing: bool) -> str:
+def _command(
+    experiment: Path, fits: Path | None, model: str, rig: Path | None, out: Path | None, run_missing: bool
+) -> str:
     parts = ["python", "-m", "calibration.table", str(experiment)]
     parts += ["--fits", str(fits)] if fits else []
     parts += ["--model", model] if model != "all" else []
+    parts += ["--rig", str(rig)] if rig else []
     parts += ["--out", str(out)] if out else []
     parts += [] if run_missing else ["--no-run"]
     return shlex.join(parts)

@@ -47,6 +47,8 @@ class Kind:
         model; empty for a kind that is only diagnosed.
     objectives : functions that import what it brings to a fit, by the objective's name; if there is no
         likelihood among them, it is that of its model.
+    whole : function that is True for an experiment all of whose trials `load`'s model takes; others are
+        fitted by further models (`models`).
     plural : its trials in the name of that likelihood ("pokes"); its own name if left out.
     over_time : function that imports its support of viscosity, softening and fibres; None if it has none.
     """
@@ -60,6 +62,7 @@ class Kind:
     old_name: str = ""
     compares: Callable[[Experiment], Sequence[Trial]] = lambda _: ()
     objectives: Mapping[ObjectiveName, Callable[[], Contribute]] = field(default_factory=dict)
+    whole: Callable[[Experiment], bool] = lambda _: True
     plural: str = ""
     over_time: Callable[[], OverTime] | None = None
 
@@ -167,6 +170,21 @@ def contribution(
     return Contribution(objectives=(ModelObjective(model, name=name),), left_out=tuple(model.left_out()))
 
 
+def models(
+    kind: Kind, own: Experiment, context: FitContext
+) -> tuple[Sequence[MeasurementModel], Sequence[str]]:
+    """Models by which a fit compares an experiment of a kind's trials of one material, and what they leave
+    out: a prediction compares the same. The kind's own model, where its objectives have none.
+    """
+    found = contribution(kind, own, context)
+    assert found is not None, "every kind has a likelihood"
+    mine = [o.model for o in found.objectives if isinstance(o, ModelObjective)]
+    if not mine:
+        baseline = Baseline.of_law(own.trials, context.law)
+        mine = [build(kind, own, baseline=baseline, workers=context.workers)]
+    return mine, found.left_out
+
+
 def _late(module: str, name: str) -> Callable[[], Any]:
     """Function that imports a name of a module of `calibration.measurements` when it is called."""
     return lambda: getattr(import_module(f"calibration.measurements.{module}"), name)
@@ -178,6 +196,13 @@ def _outlined(experiment: Experiment) -> list[Trial]:
 
 def _marked(experiment: Experiment) -> list[Trial]:
     return [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
+
+
+def _all_swing(experiment: Experiment) -> bool:
+    from calibration.measurements.release._record import not_swinging
+
+    beams = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
+    return not any(not_swinging(t, experiment) for t in beams)
 
 
 def _pushed(experiment: Experiment) -> list[Trial]:
@@ -258,6 +283,7 @@ register(
         old_name="bars",
         compares=_marked,
         objectives={"likelihood": _late("release.contribution", "likelihood")},
+        whole=_all_swing,
         over_time=_late("release.over_time", "OVER_TIME"),
     )
 )

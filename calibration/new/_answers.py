@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from calibration.errors import InputError
 from calibration.experiment import PhotoSettings
-from calibration.experiment._beam import CheckerboardEntry, Section
+from calibration.experiment._beam import CheckerboardEntry, RegistrationEntry, Section
 from calibration.experiment._fields import (
     Component,
     Doubt,
@@ -94,6 +94,14 @@ class CouponAnswers(_RecordAnswers):
         return self
 
 
+class SurfaceAnswers(Strict):
+    """A scan of the top surface of a block."""
+
+    time_s: Annotated[float, Field(ge=0, le=1e9)] | None = None
+    points: SourceFile
+    point_sd_mm: Noise | None = None
+
+
 class PokeAnswers(_RecordAnswers):
     """An indentation test."""
 
@@ -105,6 +113,7 @@ class PokeAnswers(_RecordAnswers):
     direction: Numbers3 | None = None
     force_sd_N: Noise | None = None
     depth_sd_mm: Doubt | None = None
+    surfaces: tuple[SurfaceAnswers, ...] = ()
 
 
 class RegistrationAnswers(Strict):
@@ -123,12 +132,19 @@ class CaptureAnswers(Strict):
     outline_sd_mm: Noise | None = None
     outline_correlation_mm: Doubt | None = None
     registration_sd: RegistrationAnswers | None = None
+    registration_shared_sd: RegistrationEntry | None = None
     photo: SourceFile | None = None
     photo_checkerboard: CheckerboardEntry | None = None
 
+    @model_validator(mode="after")
+    def _shared_by_outlines(self) -> CaptureAnswers:
+        if self.registration_shared_sd is not None and self.outline is None:
+            raise say("registration_shared_sd", "expected an outline beside it")
+        return self
+
 
 class BeamAnswers(_TrialAnswers):
-    """A photographed cantilever or bridge."""
+    """A cantilever or bridge that is photographed, or tracked by markers."""
 
     kind: Literal["beam"]
     section: Section | None = None
@@ -138,7 +154,20 @@ class BeamAnswers(_TrialAnswers):
     supports: Supports | None = None
     gravity_m_s2: Numbers3 | None = None
     tip_force_N: Numbers3 | None = None
-    captures: Annotated[tuple[CaptureAnswers, ...], Field(min_length=1)]
+    tip_force_height_mm: Component | None = None
+    captures: Annotated[tuple[CaptureAnswers, ...], Field(min_length=1)] | None = None
+    markers: SourceFile | None = None
+    marker_positions_mm: Annotated[dict[Name, Position], Field(min_length=1)] | None = None
+    marker_sd_mm: Noise | None = None
+
+    @model_validator(mode="after")
+    def _seen(self) -> BeamAnswers:
+        if self.captures is None and self.markers is None:
+            raise say("captures", "missing, expected captures or markers")
+        for key in ("marker_positions_mm", "marker_sd_mm"):
+            if self.markers is None and getattr(self, key) is not None:
+                raise say("markers", f"missing, expected it beside {key}")
+        return self
 
 
 class BoardAnswers(Strict):

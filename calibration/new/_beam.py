@@ -1,11 +1,11 @@
-"""A photographed beam: photographs or traced outlines, and what the lab knows of the beam."""
+"""A beam: photographs, traced outlines or markers, and what the lab knows of it."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from calibration.new._answers import BeamAnswers, CaptureAnswers
-from calibration.new._asking import Question, above_zero, numbers, one_of
+from calibration.new._asking import SD, Question, above_zero, numbers, one_of
 from calibration.new._plausible import Bar
 from calibration.new._trial import Work
 
@@ -17,7 +17,7 @@ _DENSITY_SD = 0.01  # of the density
 
 
 def make_beam(work: Work, entry: BeamAnswers) -> dict[str, Any]:
-    """Keys of the trial in experiment.yaml; its photographs and outlines are copied.
+    """Keys of the trial in experiment.yaml; its photographs and tables are copied.
 
     Raises
     ------
@@ -55,8 +55,48 @@ def make_beam(work: Work, entry: BeamAnswers) -> dict[str, Any]:
     )
     if entry.tip_force_N is not None:
         trial["tip_force_N"] = list(entry.tip_force_N)
-    trial["captures"] = [_capture(work, capture, where, k) for k, capture in enumerate(entry.captures, 1)]
+    if entry.tip_force_height_mm is not None:
+        trial["tip_force_height_mm"] = entry.tip_force_height_mm
+    if entry.captures is not None:
+        trial["captures"] = [_capture(work, capture, where, k) for k, capture in enumerate(entry.captures, 1)]
+    if entry.markers is not None:
+        trial |= _markers(work, entry, entry.markers)
     return trial
+
+
+def _markers(work: Work, entry: BeamAnswers, table: str) -> dict[str, Any]:
+    where = entry.id
+    given = entry.marker_positions_mm
+    positions = work.settle(
+        where,
+        "marker_positions_mm",
+        None if given is None else {name: list(place) for name, place in given.items()},
+        "position of each marker in the unloaded pose, x from the clamp's face, y, z [mm]:"
+        " NAME: x, y, z; NAME: x, y, z",
+        _positions,
+    )
+    sd = work.settle(
+        where,
+        "marker_sd_mm",
+        entry.marker_sd_mm,
+        "standard deviation of each component of a marker's displacement [mm]",
+        above_zero,
+        help=SD,
+    )
+    name = work.copy(work.source(table, f"{where}.markers"), "beams")
+    return {"markers": name, "marker_positions_mm": positions, "marker_sd_mm": sd}
+
+
+def _positions(text: str) -> dict[str, list[float]]:
+    found: dict[str, list[float]] = {}
+    for part in filter(str.strip, text.split(";")):
+        name, colon, place = part.rpartition(":")
+        if not colon or not name.strip():
+            raise ValueError(f"expected NAME: x, y, z, got {part.strip()!r}")
+        found[name.strip()] = numbers(3)(place)
+    if not found:
+        raise ValueError("expected at least one NAME: x, y, z")
+    return found
 
 
 def _section(work: Work, entry: BeamAnswers) -> dict[str, Any]:
@@ -113,6 +153,8 @@ def _capture(work: Work, capture: CaptureAnswers, where: str, number: int) -> di
                     default=default,
                     why="proposed, not measured: of an outline traced by hand",
                 )
+        if capture.registration_shared_sd is not None:
+            found["registration_shared_sd"] = capture.registration_shared_sd.model_dump()
         words = {"shift_mm": "shift [mm]", "roll_deg": "turn [deg]", "scale": "scale [-]"}
         found["registration_sd"] = {
             key: work.settle_sd(

@@ -189,7 +189,7 @@ def _move_paths(node: Any, base: Path, names: dict[Path, str]) -> None:
             _move_paths(value, base, names)
     elif isinstance(node, dict):
         for key, value in node.items():
-            if key in ("file", "photo", "outline", "mesh") and isinstance(value, str):
+            if key in ("file", "photo", "outline", "markers", "points", "mesh") and isinstance(value, str):
                 node[key] = names.get(base / value, value)
             else:
                 _move_paths(value, base, names)

@@ -38,7 +38,10 @@ Exit codes: 0 done, 2 bad input and nothing written, 130 stopped by Ctrl-C.
 def main(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Photographs, traced outlines, records of machines (docs/how-to/lab-files.md)."),
+        typer.Argument(
+            help="Photographs, traced outlines, displacements of markers, records of machines"
+            " (docs/how-to/lab-files.md)."
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write: new or empty.")] = None,
     yes: Annotated[
@@ -53,8 +56,9 @@ def main(
     page: Annotated[str, typer.Option(help="Page of the board: a4, a3 or letter.")] = "a4",
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
-    """Make an experiment from photographs, traced outlines or the files of testing machines: asks for what is
-    missing, proposes standard deviations, checks units by plausibility, and reads what it wrote."""
+    """Make an experiment from photographs, traced outlines, markers or the files of testing machines: asks
+    for what is missing, proposes standard deviations, checks units by plausibility, and reads what it wrote.
+    """
     given = list(files or [])
     if yes is not None and given:
         raise InputError("--yes: expected no files beside it, the answers name them")

@@ -13,7 +13,11 @@ from calibration.lab_files import LabTest, read_lab_file
 from calibration.new._asking import one_of, prompted
 
 _PHOTOS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
-_OUTLINE = {"side", "x_mm", "z_mm"}
+_TABLES = {
+    "outline": {"side", "x_mm", "z_mm"},
+    "markers": {"marker", "time_s", "ux_mm", "uy_mm", "uz_mm"},
+}
+_OF_BEAMS = ("photo", *_TABLES)
 
 
 def interview(files: list[Path], name: str, raw: dict[str, Any]) -> None:
@@ -22,7 +26,8 @@ def interview(files: list[Path], name: str, raw: dict[str, Any]) -> None:
     Parameters
     ----------
     files : list of Path
-        Photographs, traced outlines (side, x_mm, z_mm), records of machines.
+        Photographs, traced outlines (side, x_mm, z_mm), displacements of markers (marker, time_s, ux_mm,
+        uy_mm, uz_mm), records of machines.
     name : str
         Proposed for the experiment.
     raw : dict
@@ -49,38 +54,51 @@ def interview(files: list[Path], name: str, raw: dict[str, Any]) -> None:
         trial: dict[str, Any] = {"id": _name(raw, file, kind)}
         old = next((t for t in raw["trials"] if t["id"] == trial["id"]), None)
         if old is not None:
-            old["captures"].append({kind: str(file.absolute())})
+            _add(old, kind, file)
             continue
         material = _text(f"{trial['id']}: name of the material", material)
         trial |= {"kind": kind if kind in ("coupon", "poke") else "beam", "material": material}
         if trial["kind"] == "beam":
-            trial["captures"] = [{kind: str(file.absolute())}]
+            _add(trial, kind, file)
         else:
             trial["file"] = str(file.absolute())
         raw["trials"].append(trial)
 
 
+def _add(beam: dict[str, Any], kind: str, file: Path) -> None:
+    """Add a file of a beam to its answers."""
+    if kind == "markers":
+        beam[kind] = str(file.absolute())
+    else:
+        beam.setdefault("captures", []).append({kind: str(file.absolute())})
+
+
+def _takes(trial: dict[str, Any], kind: str) -> bool:
+    """True if a trial may have a further file of this kind."""
+    return trial["kind"] == "beam" and kind in _OF_BEAMS and not (kind == "markers" and kind in trial)
+
+
 def _sort(file: Path) -> str | None:
-    """photo, outline, or None for a record."""
+    """photo, outline, markers, or None for a record."""
     if file.suffix.lower() in _PHOTOS:
         return "photo"
     with file.open("rb") as content:
         head = content.readline(400).decode("utf-8", errors="replace")
     names = {c.strip() for c in head.lstrip("\ufeff").split(",")}
-    return "outline" if names == _OUTLINE else None
+    return next((kind for kind, columns in _TABLES.items() if names == columns), None)
 
 
 def _name(raw: dict[str, Any], file: Path, kind: str) -> str:
-    """An id: of a new trial, or of the beam that a further photograph or outline shows."""
+    """An id: of a new trial, or of the beam that a further photograph or table shows."""
     stem = re.sub(r"[^\w .,+()%-]", "-", file.stem).strip(" .,+()%-")[:80] or "trial"
-    beams = [t["id"] for t in raw["trials"] if t["kind"] == "beam"]
-    also = f" (of the same beam: {', '.join(beams)})" if beams and kind in ("photo", "outline") else ""
+    beams = [t["id"] for t in raw["trials"] if _takes(t, kind)]
+    also = f" (of the same beam: {', '.join(beams)})" if beams else ""
     while True:
         text = _text(f"{file.name}: id of the trial{also}", stem)
-        taken = {t["id"]: t["kind"] for t in raw["trials"]}
+        taken = {t["id"] for t in raw["trials"]}
         if not re.fullmatch(r"\w[\w .,+()%-]{0,99}", text):
             typer.echo("  expected letters, digits and . , + - _ ( ) %")
-        elif text in taken and not (taken[text] == "beam" and kind in ("photo", "outline")):
+        elif text in taken and text not in beams:
             typer.echo(f"  {text} is taken")
         else:
             return text

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from calibration.lab_files import Quantity
-from calibration.new._answers import PokeAnswers
-from calibration.new._asking import above_zero, numbers, one_of
+from calibration.new._answers import PokeAnswers, SurfaceAnswers
+from calibration.new._asking import SD, above_zero, numbers, one_of, zero_or_more
 from calibration.new._plausible import Push
 from calibration.new._record import open_record
 from calibration.new._trial import Work, csv_text
@@ -99,8 +99,28 @@ def make_poke(work: Work, entry: PokeAnswers) -> tuple[dict[str, Any], Push]:
         _DEPTH_SD,
         "of a crosshead and the first touch",
     )
+    if entry.surfaces:
+        trial["surfaces"] = [_surface(work, s, where, k) for k, s in enumerate(entry.surfaces, 1)]
     radius_m = float(rod["radius_mm"]) * 1e-3
     return trial, Push(depth=depth, force=force, time=time, radius=radius_m, height=float(block[2]) * 1e-3)
+
+
+def _surface(work: Work, surface: SurfaceAnswers, where: str, number: int) -> dict[str, Any]:
+    place = f"{where}.surfaces[#{number}]"
+    return {
+        "time_s": work.settle(
+            place, "time_s", surface.time_s, "time of the scan on the record's clock [s]", zero_or_more
+        ),
+        "points": work.copy(work.source(surface.points, f"{place}.points"), "surfaces"),
+        "point_sd_mm": work.settle(
+            place,
+            "point_sd_mm",
+            surface.point_sd_mm,
+            "standard deviation of a scanned point [mm]",
+            above_zero,
+            help=SD,
+        ),
+    }
 
 
 def _listed(values: tuple[float, ...] | None) -> list[float] | None:

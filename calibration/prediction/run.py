@@ -14,10 +14,13 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.inference import WIDTH
-from calibration.measurements._baseline import SCATTER, Baseline
-from calibration.measurements._kinds import Kind, build, compared
+from calibration.measurements._baseline import SCATTER
+from calibration.measurements._contribution import FitContext
+from calibration.measurements._kinds import Kind, compared
+from calibration.measurements._kinds import models as models_of
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
+from calibration.measurements.outlines.simulators import OURS
 from calibration.parameters import OPTIONS
 from calibration.prediction._cards import (
     CardFile,
@@ -261,15 +264,21 @@ def _by_cards(
     scatter: float,
     workers: int | None,
 ) -> tuple[list[Record], list[str]]:
-    """Records with their predictions; where these lie outside of what the cards' effects were measured in."""
-    made: dict[Name, tuple[MeasurementModel, Calibrated]] = {}
+    """Records with their predictions, and notes: what is not compared of them, and where they lie outside of
+    what the cards' effects were measured in."""
+    parts: dict[Name, list[tuple[MeasurementModel, Calibrated]]] = {}
+    not_compared: dict[str, None] = {}
+    records: list[Record] = []
+    tests: list[MeasurementModel] = []
     try:
         for name, m in models.items():
             _check_parts(kind, own, m)
-            model = build(kind, own, baseline=Baseline.of_law(own.trials, m.law), workers=workers)
-            made[name] = (model, _from_card(model, m, scatter))
-        test = next(iter(made.values()))[0]
-        records = predict_records(test, made)
+            made, left_out = models_of(kind, own, FitContext(law=m.law, simulator=OURS, workers=workers))
+            parts[name] = [(model, _from_card(model, m, scatter)) for model in made]
+            not_compared |= dict.fromkeys(left_out)
+        for some in zip(*parts.values(), strict=True):
+            tests.append(some[0][0])
+            records += predict_records(some[0][0], dict(zip(parts, some, strict=True)))
     except ValueError as error:
         ids = ", ".join(t.id for t in own.trials)
         raise InputError(f"trials {ids}: the cards predict nothing of them: {error}") from error
@@ -278,9 +287,9 @@ def _by_cards(
         f"{own.trials[0].material}: {text}": None
         for m in known
         for name, seen in m.ranges.items()
-        for text in beyond(name, seen, [x for r in test.records for x in r.ranges.get(name, ())])
+        for text in beyond(name, seen, [x for t in tests for r in t.records for x in r.ranges.get(name, ())])
     }
-    return records, [f"{text}; {UNSEEN}" for text in outside]
+    return records, [*(f"not used: {x}" for x in not_compared), *(f"{x}; {UNSEEN}" for x in outside)]
 
 
 UNSEEN = "there the model's error may be larger than the intervals know"

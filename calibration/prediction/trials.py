@@ -51,7 +51,8 @@ def from_trials(
     on_progress: OnMessage = lambda _: None,
 ) -> Prediction:
     """Trials of an experiment, predicted from a diagnosis of others: its baseline, and the causes that it
-    names. Trials of another kind of measurement are predicted from the cards that it would write.
+    names. Trials of another kind of measurement, and others that its model does not take, are predicted from
+    the cards that it would write.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ def from_trials(
     for t in wanted:
         if t.material not in {f.material for f in fitted}:
             raise InputError(f"trial {t.id}: material {t.material}: expected one of the trials to fit")
-    if _same_kind(kind, theirs):
+    if _same_model(kind, theirs):
         found = _within(
             kind,
             experiment,
@@ -107,9 +108,10 @@ def from_trials(
     return replace(found, notes=notes, seconds=time.monotonic() - begun)
 
 
-def _same_kind(kind: Kind, wanted: Experiment) -> bool:
+def _same_model(kind: Kind, wanted: Experiment) -> bool:
+    """True if the model of a kind takes the trials to predict: it knows more than cards say."""
     try:
-        return kind_of(wanted, kind.name) is kind
+        return kind_of(wanted, kind.name) is kind and kind.whole(wanted)
     except InputError:
         return False
 

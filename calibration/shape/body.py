@@ -165,6 +165,30 @@ def body_mesh(result: tisim.Result, *, frame: int = -1, subdivide: int = 8) -> t
     return body
 
 
+def body_between(body: trimesh.Trimesh, first: float, last: float) -> trimesh.Trimesh:
+    """The part of a body at x from `first` to `last` [m], closed by flat faces; either may be infinite.
+
+    InputError where the body cannot be cut.
+    """
+    import trimesh  # an extra: only bodies need it
+
+    low, high = body.bounds
+    margin = float((high - low).max())
+    low, high = low - margin, high + margin
+    low[0], high[0] = max(low[0], first), min(high[0], last)
+    # at the origin, since manifold3d is handed single precision
+    middle = body.bounds.mean(axis=0)
+    whole = trimesh.Trimesh(body.vertices - middle, body.faces, process=False)
+    box = trimesh.creation.box(bounds=[low - middle, high - middle])
+    try:
+        part = trimesh.boolean.intersection([whole, box], engine="manifold")
+    except Exception as error:  # the engine raises what it likes
+        raise InputError(f"body: it could not be cut at the grips: {error}") from error
+    if not len(part.faces):
+        raise InputError(f"body: nothing of it lies at x from {1e3 * first:g} to {1e3 * last:g} mm")
+    return trimesh.Trimesh(part.vertices + middle, part.faces, process=False)
+
+
 def _cut_quadratic(x: Array, facets: NDArray[np.int64], n: int) -> tuple[Array, NDArray[np.int64]]:
     """Facets of six nodes (f, 6) as n*n triangles each: vertices (v, 3) and faces (t, 3).
 

@@ -9,18 +9,27 @@ from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from calibration import metrics
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Experiment
 from calibration.measurements.outlines import REFERENCE, beam_scene
 from calibration.measurements.outlines.dice import MeasuredBody, measured_bodies
-from calibration.shape import body_mesh
-from calibration.study import Calibration, usable
+from calibration.measurements.outlines.setup import Setup
+from calibration.shape import body_between, body_mesh
+from calibration.study import Calibration, OnSetup, usable
 from tisim import Material, Result, laws, simulate
 from tisim.mesh import unfold
+
+if TYPE_CHECKING:
+    import trimesh
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +71,16 @@ def fits_folder(folder: Path) -> Path:
 def read_fit(folder: Path, experiment: Experiment, material: str, label: str) -> Calibration | None:
     """The finished fit of a law, None where there is none.
 
-    InputError where the file is no fit, or one of other data, another material or another law.
+    InputError where the file is no fit, or one of other data, another material, another law or another rig
+    than the experiment's (`OnSetup`).
     """
     path = folder / f"{material}-{label}.json"
     if not path.exists():
         return None
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        digest = data["header"]["data"]
+        header = data["header"]
+        digest, rig, rig_file = header["data"], header.get("rig"), header.get("rig_file")
         fit = Calibration.from_json(data["calibration"])
         if fit.parameters:
             laws.get(fit.law).check(fit.parameters)
@@ -83,6 +94,14 @@ def read_fit(folder: Path, experiment: Experiment, material: str, label: str) ->
         )
     if (fit.material, fit.label) != (material, label):
         raise InputError(f"{path}: expected {label} of {material}, it holds {fit.label} of {fit.material}")
+    known = experiment.setup.digest if isinstance(experiment, OnSetup) else None
+    if rig != known:
+        made = f"that it was made with, {rig_file}" if rig_file else "that it was made with"
+        raise InputError(
+            f"{path}: header.rig: expected the same --rig {made}"
+            if rig
+            else f"{path}: header.rig: expected no --rig, since this fit was made without one"
+        )
     return fit
 
 
@@ -173,7 +192,8 @@ def row(
         density = experiment.materials[material].density
         assert density is not None  # a fit to outlines is refused without one
         trials = traced_beams(experiment, material)
-        found, trouble = measure(fit, trials, bodies, density=density, workers=workers)
+        setup = experiment.setup if isinstance(experiment, OnSetup) else None
+        found, trouble = measure(fit, trials, bodies, density=density, setup=setup, workers=workers)
         message = "; ".join(m for m in (fit.message, trouble, fit.note) if m)
     return Row(
         law=law,
@@ -201,32 +221,97 @@ def measure(
     bodies: Mapping[str, Sequence[MeasuredBody]],
     *,
     density: float,
+    setup: Setup | None = None,
     workers: int | None = None,
 ) -> tuple[Measures | None, str]:
     """Measures of a fit, or None and the reason: a beam without equilibrium, a body that crosses itself.
 
-    Beams are simulated on a fine mesh (REFERENCE), as the lab states them (density [kg/m3]): no nuisance of
-    the fit is used, and photographs lie where they were registered; the figures hold those errors too.
+    Beams are simulated on a fine mesh (REFERENCE), as the lab states them (density [kg/m3]) and the known
+    setup of its rig and camera makes them: no nuisance of the fit is used, and photographs lie where they
+    were registered; the figures hold those errors too.
     """
     material = Material(law=fit.law, parameters=fit.parameters)
     scenes = [beam_scene(t, material, density=density, fidelity=REFERENCE) for t in trials]
+    if setup is not None:
+        scenes = [setup.bend(beam, t) for beam, t in zip(scenes, trials, strict=True)]
     results = simulate(scenes, workers=workers)
     for trial, result in zip(trials, results, strict=True):
         if not result.ok:
             return None, f"{trial.id}: {result.status} at the fitted parameters: {result.message}"
     beams = []
     for trial, result in zip(trials, results, strict=True):
+        seen = None if setup is None else _Seen.of(result, trial, setup)
         try:
-            beams.append(_beam(result, bodies[trial.id]))
+            beams.append(_beam(result, bodies[trial.id], seen))
         except InputError as error:
             return None, f"{trial.id}: {error}"
     return _mean_measures(beams), ""
 
 
-def _beam(result: Result, photographs: Sequence[MeasuredBody]) -> Measures:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Seen:
+    """What photographs show of a simulated beam on a known setup: nothing behind the faces of its grips.
+
+    Images move and turn sections, but do not enlarge them: of a measured body only the mid line is traced.
+    """
+
+    setup: Setup
+    trial: BeamTrial
+    line: Array  # mid line, x and z [m], shape (k, 2)
+
+    @classmethod
+    def of(cls, result: Result, trial: BeamTrial, setup: Setup) -> _Seen:
+        mesh, x = unfold(result.mesh, result.positions[-1])
+        _, section, count = np.unique(mesh.nodes[:, 0].round(7), return_inverse=True, return_counts=True)
+        middle = [np.bincount(section, weights=x[:, i]) / count for i in (0, 2)]
+        fine = np.linspace(0.0, len(count) - 1.0, FINE)
+        line = [np.interp(fine, np.arange(len(count)), m) for m in middle]
+        return cls(setup=setup, trial=trial, line=np.column_stack(line))
+
+    def faces(self) -> tuple[float, float]:
+        """Positions along the scene's x of the grips' faces [m]; infinite where no beam is behind them."""
+        shown = self.setup.image(self.line, self.trial)[:, 0]
+        far = self.trial.free_length if self.trial.supports == "clamped-clamped" else np.inf
+        # faces are near the ends, where the line runs along x
+        first = int(np.argmax(shown >= -ROUNDING))
+        last = len(shown) - 1 - int(np.argmax(shown[::-1] <= far + ROUNDING))
+        x = self.line[:, 0]
+        return x[first] if first else -np.inf, x[last] if last < len(shown) - 1 else np.inf
+
+    def body(self, body: trimesh.Trimesh) -> trimesh.Trimesh:
+        found = body_between(body, *self.faces())
+        found.vertices = self._image(np.asarray(found.vertices))
+        return found
+
+    def nodes(self, nodes: Array) -> Array:
+        first, last = self.faces()
+        return self._image(nodes[(nodes[:, 0] >= first) & (nodes[:, 0] <= last)])
+
+    def _image(self, points: Array) -> Array:
+        shown = self.setup.image(self.line, self.trial)
+        turn = _angle(shown) - _angle(self.line)
+        near = cKDTree(self.line).query(points[:, [0, 2]])[1]
+        away = points[:, [0, 2]] - self.line[near]
+        c, s = np.cos(turn[near]), np.sin(turn[near])
+        x, z = shown[near].T + np.array([c * away[:, 0] - s * away[:, 1], s * away[:, 0] + c * away[:, 1]])
+        return np.column_stack([x, points[:, 1], z])
+
+
+FINE = 4001  # points of a mid line: at most 0.05 mm apart
+ROUNDING = 1e-6  # of a position [m]
+
+
+def _angle(line: Array) -> Array:
+    along = np.gradient(line, axis=0)
+    return np.asarray(np.unwrap(np.arctan2(along[:, 1], along[:, 0])))
+
+
+def _beam(result: Result, photographs: Sequence[MeasuredBody], seen: _Seen | None) -> Measures:
     """Measures of one beam, mean over its photographs."""
     simulated = body_mesh(result)
     _, nodes = unfold(result.mesh, result.positions[-1])
+    if seen is not None:
+        simulated, nodes = seen.body(simulated), seen.nodes(nodes)
     found = []
     for photograph in photographs:
         values = metrics.compare(simulated, photograph.body)

@@ -73,8 +73,13 @@ def rich_table(rows: Sequence[Row]) -> Table:
     return table
 
 
-def write_markdown(path: Path, rows: Sequence[Row], *, command: str, source: str) -> None:
-    """Write the table as a page, with the command that made it."""
+AS_STATED = "beams as the lab states them, photographs as they lie"
+
+
+def write_markdown(
+    path: Path, rows: Sequence[Row], *, command: str, source: str, setup: str = AS_STATED
+) -> None:
+    """Write the table as a page, with the command that made it; setup : of beams and photographs."""
     further = _further_names(rows)
     head = (*HEAD, *(f"{METRICS[n].title} / {METRICS[n].unit}" if n in METRICS else n for n in further))
     lines = [
@@ -84,8 +89,7 @@ def write_markdown(path: Path, rows: Sequence[Row], *, command: str, source: str
         "",
         f"{source} In brackets: the paper's printed row of the same law and mixture, its time that of one"
         " simulation. Means over the photographs of a beam, then over the beams. Simulated at the fitted"
-        " parameters against the section swept along the measured mid line; beams as the lab states them,"
-        " photographs as they lie.",
+        f" parameters against the section swept along the measured mid line; {setup}.",
         "",
         "| " + " | ".join(head) + " |",
         "| " + " | ".join(["---"] * len(head)) + " |",

@@ -27,9 +27,15 @@ def is_compressed(record: Record) -> bool:
     return between_platens(record.mode, record.stretch)
 
 
+def up_to(last: float, mode: CouponMode, stretch: Array) -> NDArray[np.bool_]:
+    """Mask (k,) of the points of a test up to a strain, if it is one of compression; else of all."""
+    strain = 1.0 - stretch if between_platens(mode, stretch) else np.zeros(stretch.shape)
+    return np.asarray(strain <= last)
+
+
 def compared(record: Record, last: float) -> Record:
     """Record of compression up to a strain; other records unchanged."""
-    return record.only(1.0 - record.stretch <= last) if is_compressed(record) else record
+    return record.only(up_to(last, record.mode, record.stretch)) if is_compressed(record) else record
 
 
 def pushed(record: Record) -> Record:

@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment.model import Experiment
+from calibration.experiment.model import CouponMode, Experiment
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._state import State
 from calibration.measurements.compression._bonded import USUAL, BondedRatio
 from calibration.measurements.compression._coordinates import Coordinates
 from calibration.measurements.compression._effect import CompressionEffect
-from calibration.measurements.compression._record import LAST, compared, is_compressed, pushed
+from calibration.measurements.compression._record import LAST, compared, is_compressed, pushed, up_to
 from calibration.measurements.compression._repeatability import FIRST, TERMS, repeatability_of
 from calibration.measurements.compression.curves import Cylinder
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
@@ -77,11 +77,11 @@ class CompressionModel(HomogeneousModel):
     ) -> None:
         if not 2.0 * FIRST < last <= LAST:
             raise ValueError(f"last: expected a strain of up to {LAST:g}, got {last:g}")
+        self.last = last
         super().__init__(experiment, effects=effects, baseline=baseline)
         if not any(is_compressed(r) for r in self.records):
             raise InputError("experiment.yaml: trials: expected a uniaxial coupon in compression")
         self.stated = cylinder
-        self.last = last
         self.bonded = BondedRatio(cylinder=cylinder or USUAL)
         self.whole_range = tuple(self.records)
         self._measured_in([pushed(compared(r, last)) for r in self.records])
@@ -89,6 +89,9 @@ class CompressionModel(HomogeneousModel):
         self.coordinates = Coordinates.of(self.records, self.baseline, self.repeatability)
         self.baseline = self._base.baseline = self.coordinates.baseline
         self._set_candidates()
+
+    def _selects(self, mode: CouponMode, stretch: Array) -> NDArray[np.bool_]:
+        return up_to(self.last, mode, stretch)
 
     def _stresses_of(self, some: Sequence[int], state: State) -> list[Array]:
         found = []

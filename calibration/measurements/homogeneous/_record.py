@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -26,6 +26,8 @@ from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
+# from the mode and the stretch (k,) of a record's points: mask of those that are compared
+Selects = Callable[[CouponMode, Array], NDArray[np.bool_]]
 
 MOST = 100  # largest number of points of a branch: more are averaged in bins of neighbours
 TURN = 0.03  # least reversal at a turning point, as a fraction of the record's range
@@ -106,7 +108,14 @@ class Record:
         return replace(self, course=course, **{name: getattr(self, name)[kept] for name in arrays})
 
 
-def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[Record]:
+def everything(_: CouponMode, stretch: Array) -> NDArray[np.bool_]:
+    """Mask of a record's points of which all are compared."""
+    return np.ones(stretch.shape, dtype=bool)
+
+
+def records_of(
+    trials: Sequence[CouponTrial], *, courses: bool = False, selects: Selects = everything
+) -> list[Record]:
     """Records of trials, one per trial.
 
     The trials of a named specimen are taken in the order of the file: `peak` includes its earlier trials of
@@ -117,6 +126,8 @@ def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[
     trials : the trials.
     courses : True for a history-dependent material: records have their course, and the bins of holds are
         spaced by time.
+    selects : mask of the points that the caller compares, and from which alone an error that the lab does not
+        state is estimated; the records have the others too.
 
     Raises
     ------
@@ -128,7 +139,7 @@ def records_of(trials: Sequence[CouponTrial], *, courses: bool = False) -> list[
     furthest: dict[tuple[str, str], float] = {}
     for t in trials:
         own = (t.specimen or f"trial {t.id}", t.mode)
-        record = _record(t, seen.get(own, 0.0), furthest.get(own, 1.0) if courses else None)
+        record = _record(t, seen.get(own, 0.0), furthest.get(own, 1.0) if courses else None, selects)
         found.append(record)
         top = float(first_excess(t.mode, record.stretch).max())
         seen[own] = max(seen.get(own, 0.0), top)
@@ -154,7 +165,7 @@ def _alike(one: Record, other: Record) -> bool:
     return bool(abs(reaches[0] - reaches[1]) <= SAME_REACH * abs(reaches[0])) and bool(same_rate)
 
 
-def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record:
+def _record(trial: CouponTrial, before: float, furthest: float | None, selects: Selects) -> Record:
     """Record of a trial.
 
     before, furthest : largest I1 - 3 of earlier trials, and its stretch; `furthest` is None without a course.
@@ -171,14 +182,15 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
     raw_rate = rates_of(trial, parts)
     peak = np.maximum.accumulate(np.maximum(excess, before))
     rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
-    sds, numbers, firsts, counts = [], [], [], []
+    means: list[Mapping[str, Array]] = []
+    numbers, firsts, counts, samples = [], [], [], []
     for n, b in enumerate(parts):
         if timed:
             first, count = bins_over_time(raw_time, b.points, holds, MOST)
         else:
             first, count = bins(b.points, MOST, driven=trial.stretch, sd=trial.stretch_sd)
         weight = np.ones(len(excess)) if trial.samples is None else trial.samples
-        samples = np.add.reduceat(weight[b.points], first)
+        samples.append(np.add.reduceat(weight[b.points], first))
         firsts.append(b.points.start + first)
         counts.append(count)
         raw = {
@@ -189,16 +201,21 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
             "peak": peak,
             "rate": raw_rate,
         }
-        mean = {name: np.add.reduceat((weight * x)[b.points], first) / samples for name, x in raw.items()}
+        means.append({k: np.add.reduceat((weight * x)[b.points], first) / samples[n] for k, x in raw.items()})
         for name in _AVERAGED:
-            rows[name].append(mean[name])
-        if timed:
-            sds.append(_sd_over_time(trial, b, holds, mean, first, count, samples))
-        else:
-            sds.append(_sd(trial, b, mean["stretch"], mean["stress"], count, samples))
+            rows[name].append(means[n][name])
         numbers.append(np.full(first.size, float(n)))
     whole: dict[str, Any] = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
-    sd = np.concatenate(sds)
+    kept = selects(trial.mode, whole["stretch"])
+    used = np.repeat(kept, np.concatenate(counts).astype(int))
+    sd = np.concatenate(
+        [
+            _sd_over_time(trial, b, holds, means[n], firsts[n] - b.points.start, counts[n], samples[n], used)
+            if timed
+            else _sd(trial, b, means[n]["stretch"], means[n]["stress"], counts[n], samples[n], used)
+            for n, b in enumerate(parts)
+        ]
+    )
     if not (np.isfinite(sd) & (sd > np.finfo(float).tiny)).all():
         raise InputError(f"trials.{trial.id}: expected some stress that is not 0, or a stated stress_sd_kPa")
     again = before > 0.0 or bool(np.isfinite(turn).any() and _loads_again(turn))
@@ -212,7 +229,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None) -> Record
         reloaded=again,
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
-        scatter_points=_scatter_points(trial, sd),
+        scatter_points=_scatter_points(trial, sd[kept], used),
         ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))}
         | ({} if trial.time is None else {"time_s": (float(trial.time[0]), float(trial.time[-1]))}),
         course=None
@@ -241,13 +258,26 @@ def _loads_again(turn: Array) -> bool:
     return bool((~unloading[int(np.argmax(unloading)) :]).any())
 
 
-def _sd(trial: CouponTrial, b: Stroke, stretch: Array, stress: Array, count: Array, samples: Array) -> Array:
+def _sd(
+    trial: CouponTrial,
+    b: Stroke,
+    stretch: Array,
+    stress: Array,
+    count: Array,
+    samples: Array,
+    used: NDArray[np.bool_],
+) -> Array:
     """Standard deviation of the means in bins [Pa], including the stretch error.
 
-    An error estimated from the scatter is at least SMALLEST_RELATIVE of the trial's largest stress, for any
-    number of averaged points. count, samples : of points, and of samples of the record, in each bin.
+    An error estimated from the scatter is at least SMALLEST_RELATIVE of the largest stress that is compared,
+    for any number of averaged points.
+
+    Parameters
+    ----------
+    count, samples : of points, and of samples of the record, in each bin.
+    used : mask of the trial's points that are compared.
     """
-    own = _own_sd(trial, b, trial.stretch[b.points], stress, count, samples)
+    own = _own_sd(trial, b, trial.stretch, stress, count, samples, used)
     if trial.stretch_sd == 0.0:
         return own
     return np.asarray(
@@ -263,10 +293,11 @@ def _sd_over_time(
     first: NDArray[np.intp],
     count: Array,
     samples: Array,
+    used: NDArray[np.bool_],
 ) -> Array:
     """As `_sd`, with the scatter about a smooth curve of time; a hold has the slope of the last ramp."""
     assert trial.time is not None
-    own = _own_sd(trial, b, trial.time[b.points], mean["stress"], count, samples)
+    own = _own_sd(trial, b, trial.time, mean["stress"], count, samples, used)
     if trial.stretch_sd == 0.0:
         return own
     rows = b.points.start + first
@@ -278,27 +309,43 @@ def _sd_over_time(
     return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(samples)))
 
 
-def _own_sd(trial: CouponTrial, b: Stroke, over: Array, stress: Array, count: Array, samples: Array) -> Array:
-    """Standard deviation of the stress alone [Pa]; over : abscissa of the curve, for the scatter about it."""
-    if trial.stress_sd is None:
-        return np.maximum(
-            unstated_sd(over, trial.stress[b.points], stress, count),
-            SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0)),
-        )
-    return np.asarray(trial.stress_sd / np.sqrt(samples))
+def _own_sd(
+    trial: CouponTrial,
+    b: Stroke,
+    over: Array,
+    stress: Array,
+    count: Array,
+    samples: Array,
+    used: NDArray[np.bool_],
+) -> Array:
+    """Standard deviation of the stress alone [Pa]; over : abscissa of the trial, for the scatter about it."""
+    if trial.stress_sd is not None:
+        return np.asarray(trial.stress_sd / np.sqrt(samples))
+    mine = used[b.points]
+    return np.maximum(
+        unstated_sd(over[b.points][mine], trial.stress[b.points][mine], stress, count), _least_sd(trial, used)
+    )
+
+
+def _least_sd(trial: CouponTrial, used: NDArray[np.bool_]) -> float:
+    """Least standard deviation of a stress that the lab does not state [Pa].
+
+    A curve that stiffens is many times larger where it is not compared.
+    """
+    return SMALLEST_RELATIVE * float(np.abs(trial.stress[used]).max(initial=0.0))
 
 
 ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed
 
 
-def _scatter_points(trial: CouponTrial, sd: Array) -> int:
-    """See `Record.scatter_points`; sd : of the means (k,)."""
+def _scatter_points(trial: CouponTrial, sd: Array, used: NDArray[np.bool_]) -> int:
+    """See `Record.scatter_points`; sd : of the means that are compared, used : mask of the trial's points."""
     if trial.stress_sd is not None:
         return 0
-    if len(np.unique(trial.stretch if trial.time is None else trial.time)) < FEWEST:
+    if len(np.unique((trial.stretch if trial.time is None else trial.time)[used])) < FEWEST:
         return ASSUMED
-    least = SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0))
-    return trial.stretch.size if float(np.median(sd)) > 1.01 * least else 0
+    scatters = float(np.median(sd)) > 1.01 * _least_sd(trial, used)
+    return int(np.count_nonzero(used)) if scatters else 0
 
 
 def turning(trial: CouponTrial) -> float:

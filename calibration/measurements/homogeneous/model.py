@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment.model import CouponTrial, Experiment
+from calibration.experiment.model import CouponMode, CouponTrial, Experiment
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import Candidate
 from calibration.measurements._folds import fifths
@@ -34,7 +34,7 @@ from calibration.measurements.homogeneous._forward import (
     with_effects,
     yielding,
 )
-from calibration.measurements.homogeneous._record import ASSUMED, Record, protocol, records_of
+from calibration.measurements.homogeneous._record import ASSUMED, Record, everything, protocol, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
@@ -110,7 +110,7 @@ class HomogeneousModel(MeasurementModel):
         self.experiment = experiment
         self.effects = dict(effects or {})
         courses = baseline is not None and bool(baseline.law.parts)
-        self._measured_in(records_of(self.trials, courses=courses))
+        self._measured_in(records_of(self.trials, courses=courses, selects=self._selects))
         self.baseline = baseline or Baseline.per_specimen(
             self.records, law=law, terms=terms, bulk_ratio=BULK_RATIO
         )
@@ -191,6 +191,10 @@ class HomogeneousModel(MeasurementModel):
             return 0
         hit = self.reached(candidate)
         return len(self.richer.free) * len({r.material for r, h in zip(self.records, hit, strict=True) if h})
+
+    def _selects(self, mode: CouponMode, stretch: Array) -> NDArray[np.bool_]:
+        """Mask of a record's points that are compared."""
+        return everything(mode, stretch)
 
     def _measured_in(self, records: Sequence[Record]) -> None:
         """Set the records, with one row per point, and their noise; clear the caches."""
@@ -340,7 +344,8 @@ class HomogeneousModel(MeasurementModel):
         """
         some = copy(self)
         courses = bool(self.baseline.law.parts)
-        some._measured_in(records_of([*self.trials, *trials], courses=courses)[len(self.trials) :])
+        whole = records_of([*self.trials, *trials], courses=courses, selects=self._selects)
+        some._measured_in(whole[len(self.trials) :])
         some.visible = self._visible([*self.records, *some.records])
         return some
 
@@ -370,8 +375,8 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the largest stress; its median is"
-                f" {100 * typical:.2g} %"
+                " scatter about a smooth curve, at least 0.5 % of the largest stress that is compared; its"
+                f" median is {100 * typical:.2g} %"
             )
         loops = [r for r in records if r.unloads and not r.reloaded]
         if loops:

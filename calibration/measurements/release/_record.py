@@ -127,10 +127,7 @@ class Record:
 
     @property
     def ranges(self) -> Mapping[str, tuple[float, float]]:
-        length = 1e3 * self.trial.free_length
-        times = [c.time for c in self.trial.captures if c.outline is not None]
-        times += [float(m.time[-1]) for m in self.trial.markers]
-        return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
+        return ranges_of(self.trial)
 
     @property
     def behind_face(self) -> Rows:
@@ -213,6 +210,14 @@ class Record:
                 first = self.sd if np.isfinite(self.held[i, axis]) else np.inf
                 parts.append(np.concatenate([[first], self.sd / np.sqrt(s.counts)]))
         return np.concatenate(parts)
+
+
+def ranges_of(trial: BeamTrial) -> Mapping[str, tuple[float, float]]:
+    """See `calibration.measurements._model.Record`."""
+    length = 1e3 * trial.free_length
+    times = [c.time for c in trial.captures if c.outline is not None]
+    times += [float(m.time[-1]) for m in trial.markers]
+    return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
 
 
 def hung_mass(trial: BeamTrial) -> float:

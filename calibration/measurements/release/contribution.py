@@ -6,13 +6,13 @@ from dataclasses import replace
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment, MaterialBelief
-from calibration.inference import Objective, OfMaterial
+from calibration.inference import Objective
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._contribution import Contribution, FitContext
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.release._record import not_swinging
 from calibration.measurements.release.model import ReleaseModel
-from calibration.measurements.release.objective import MarkerObjective
+from calibration.measurements.release.settled import SettledModel
 
 STEPS = 0.1  # of a search over moduli: 3 % of one put a vibration out of phase
 
@@ -53,9 +53,13 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
         )
         left_out += model.left_out()
         objectives.append(ModelObjective(model, name=f"markers of {', '.join(t.id for t in swinging)}"))
-    for t in still:
-        settled = settled_markers(t, own.materials[t.material], workers=context.workers)
-        objectives.append(OfMaterial(context.law, settled))
+    if still:
+        at_rest = SettledModel(
+            replace(own, trials=tuple(still)),
+            baseline=Baseline.of_law(still, context.law),
+            workers=context.workers,
+        )
+        objectives.append(ModelObjective(at_rest, name=f"markers of {', '.join(t.id for t in still)}"))
     return Contribution(
         objectives=tuple(objectives), left_out=tuple(left_out), steps=STEPS if swinging else 1.0
     )
@@ -76,13 +80,3 @@ def _taken_as_exact(trial: BeamTrial, belief: MaterialBelief) -> str:
         f"{trial.id}: the stated standard deviation of {listed}: a fit of markers takes"
         " them as exact, and its intervals are too narrow by what they add"
     )
-
-
-def settled_markers(
-    trial: BeamTrial, belief: MaterialBelief, *, workers: int | None = None
-) -> MarkerObjective:
-    """Rest positions of a beam's markers: the mean of the last third of their record."""
-    first = min(float(m.time[0]) for m in trial.markers)
-    last = min(float(m.time[-1]) for m in trial.markers)
-    window = 2.0 / 3.0 * (last - first)
-    return MarkerObjective(trial, belief, stages=("settled",), window=window, workers=workers)

@@ -112,6 +112,20 @@ class Match:
     residuals: Array
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtRest:
+    """Simulated markers at static equilibrium, in the objective's order.
+
+    Attributes
+    ----------
+    displacement : [m], shape (m, 3).
+    columns : its change by one standard deviation of each nuisance [m], shape (3 m, k).
+    """
+
+    displacement: Array
+    columns: Array
+
+
 class MarkerObjective:
     """Whitened residuals of the markers of one trial, for a beam released from its straight rest shape.
 
@@ -226,10 +240,46 @@ class MarkerObjective:
         n = len(self.stages)
         return [self._match(results[k * n : (k + 1) * n]) for k in range(len(materials))]
 
+    @property
+    def settled(self) -> Array:
+        """Mean displacement of each marker after the window [m], shape (m, 3); NaN without later samples."""
+        return np.array(
+            [
+                m.displacement[~used].mean(axis=0) if not used.all() else np.full(3, np.nan)
+                for m, used in zip(self.markers, self._used, strict=True)
+            ]
+        )
+
+    def at_rest(self, materials: Sequence[Material]) -> list[AtRest | None]:
+        """Markers at static equilibrium for each material; None without a solution (see `failures`)."""
+        results = simulate([self._at_rest(m) for m in materials], workers=self.workers)
+        return [self._resting(r) for r in results]
+
+    def _resting(self, result: Result) -> AtRest | None:
+        if not result.ok:
+            self.failures.append(f"{self.name}: {result.status}: {result.message}")
+            return None
+        moved = marker_motion(result, np.array([m.position for m in self.markers]))
+        u, turn = moved.displacement[:, -1], moved.turn[:, -1:]
+        columns = [self._columns(i, u[i : i + 1], turn[i], np.zeros(1)) for i in range(len(self.markers))]
+        return AtRest(displacement=u, columns=np.concatenate(columns))
+
     def scenes(self, material: Material, damping: Damping) -> list[Beam]:
         """FEM scene of each stage."""
+        f, at_rest = self.fidelity, self._at_rest(material)
+        released = Solver(
+            method="implicit",
+            duration=self.window + max(self._first - self.bounds[0], 0.0),
+            time_step=f.time_step,
+            mass_damping=damping.mass,
+            stiffness_damping=damping.stiffness,
+            tolerance=f.motion_tolerance,
+        )
+        return [replace(at_rest, solver=released) if s == "motion" else at_rest for s in self.stages]
+
+    def _at_rest(self, material: Material) -> Beam:
         t, f = self.trial, self.fidelity
-        at_rest = Beam(
+        return Beam(
             material=replace(material, density=self.density),
             length=t.free_length,
             section=t.section,
@@ -242,15 +292,6 @@ class MarkerObjective:
             radial_elements=f.rings,
             solver=Solver(tolerance=f.tolerance),
         )
-        released = Solver(
-            method="implicit",
-            duration=self.window + max(self._first - self.bounds[0], 0.0),
-            time_step=f.time_step,
-            mass_damping=damping.mass,
-            stiffness_damping=damping.stiffness,
-            tolerance=f.motion_tolerance,
-        )
-        return [replace(at_rest, solver=released) if s == "motion" else at_rest for s in self.stages]
 
     def _match(self, results: Sequence[Result]) -> Match | None:
         if not all(r.ok for r in results):
@@ -260,8 +301,7 @@ class MarkerObjective:
         moved = {s: marker_motion(r, places) for s, r in zip(self.stages, results, strict=True)}
         blank = np.zeros((len(places), 3))
         settled = moved["settled"].displacement[:, -1] if "settled" in moved else blank
-        means = [m.displacement[~u].mean(axis=0) if not u.all() else m.displacement[0] * np.nan
-                 for m, u in zip(self.markers, self._used, strict=True)]  # fmt: skip
+        means = self.settled
         tracks = (
             self._tracks(moved["motion"], results[self.stages.index("motion")]) if "motion" in moved else None
         )
@@ -292,7 +332,7 @@ class MarkerObjective:
             time=tuple(m.time[u] for m, u in zip(self.markers, self._used, strict=True)),
             measured=tuple(m.displacement[u] for m, u in zip(self.markers, self._used, strict=True)),
             predicted=tuple(at(release)[1]) if tracks is not None else (),
-            settled_measured=np.array(means),
+            settled_measured=means,
             settled_predicted=settled,
             nuisances=dict(zip(self.nuisance_names, values.tolist(), strict=True)),
             residuals=residuals,

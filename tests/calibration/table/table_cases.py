@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 
 RADIUS_MM, LENGTH_MM = 10.0, 50.0
@@ -43,8 +44,70 @@ def displaced(folder: Path, shifts_mm: dict[str, tuple[float, ...]], *, gravity:
     return write_experiment(folder, trials, tables=tables, materials=materials)
 
 
+def on_a_faulty_rig(
+    folder: Path, *, tilt_deg: float, depth_mm: float, scale: float, supports: str = "clamped-free"
+) -> Path:
+    """Write one unloaded 50 mm beam of S0, held `depth_mm` behind the face of a clamp that is tilted.
+
+    The photograph enlarges it by `scale` about the face.
+    """
+    turn = np.radians(tilt_deg)
+    along = np.linspace(depth_mm + 0.5, depth_mm + LENGTH_MM, 40)
+    edges = []
+    for side in (RADIUS_MM, -RADIUS_MM):
+        x = along * np.cos(turn) - side * np.sin(turn) - depth_mm
+        z = along * np.sin(turn) + side * np.cos(turn)
+        edges.append((1.0 + scale) * np.column_stack([x, z])[x > 0.3])
+    trial = beam_entry(
+        "S0-short",
+        material="S0",
+        free_length_mm=LENGTH_MM,
+        supports=supports,
+        gravity_m_s2=[0.0, 0.0, 0.0],
+        captures=[capture_entry(10.0, "beams/S0.csv")],
+    )
+    belief = {"softener_ratio": 0.0, "density_kg_m3": 1000.0, "density_sd_kg_m3": 5.0}
+    return write_experiment(
+        folder, [trial], tables={"beams/S0.csv": outline_columns(*edges)}, materials={"S0": belief}
+    )
+
+
+def rig_file(path: Path, **parameters: tuple[str, str, float]) -> Path:
+    """Write a rig.yaml; `parameters` : effect, with underscores, to whom it belongs, parameter and value."""
+    effects = [
+        {
+            "effect": name.replace("_", "-"),
+            "belongs_to": whose,
+            "scope": "all",
+            "parameters": {parameter: {"value": value, "sd": 0.01}},
+        }
+        for name, (whose, parameter, value) in parameters.items()
+    ]
+    content = {
+        "format": 1,
+        "experiment": "made",
+        "experiment_sha256": "0" * 64,
+        "base_law": "neo-hookean",
+        "use": "for tests",
+        "effects": effects,
+        "covariance": {
+            "names": list(parameters),
+            "matrix": (1e-4 * np.eye(len(effects))).tolist(),
+        },
+    }
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    return path
+
+
 def fit_file(
-    folder: Path, *, digest: str, material: str, law: str, parameters: dict[str, Any], **more: Any
+    folder: Path,
+    *,
+    digest: str,
+    material: str,
+    law: str,
+    parameters: dict[str, Any],
+    header: dict[str, Any] | None = None,
+    **more: Any,
 ) -> Path:
     """Write MATERIAL-LAW.json as a study writes it; `more` replaces values of the calibration."""
     calibration = {
@@ -79,6 +142,6 @@ def fit_file(
     }
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{material}-{law}.json"
-    header = {"format": 1, "data": digest, "material": material, "law": law}
-    path.write_text(json.dumps({"header": header, "calibration": calibration}), encoding="utf-8")
+    known = {"format": 1, "data": digest, "material": material, "law": law, **(header or {})}
+    path.write_text(json.dumps({"header": known, "calibration": calibration}), encoding="utf-8")
     return path

@@ -7,10 +7,12 @@ import json
 
 import numpy as np
 import pytest
-from table_cases import displaced, fit_file
+from table_cases import displaced, fit_file, on_a_faulty_rig, rig_file
 from typer.testing import CliRunner
 
 import tisim
+from calibration.diagnosis.rig import read_rig
+from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.study.paper_table import printed
 from calibration.table import app
@@ -155,6 +157,99 @@ def test_spoilt_fit_is_refused_and_nothing_written(tmp_path, experiment, fits, s
     assert says in found.output
     assert len(found.output.strip().splitlines()) == 1
     assert not out.exists()
+
+
+FAULTS = {
+    "clamp_tilt": ("rig", "angle_deg", 3.0),
+    "grip_length": ("rig", "depth_mm", 4.0),
+    "image_scale": ("camera", "excess", 0.03),
+}
+
+
+@pytest.fixture
+def faulty(tmp_path):
+    """A tilted beam that is held behind the clamp's face, enlarged, and its rig.yaml."""
+    folder = on_a_faulty_rig(tmp_path / "faulty", tilt_deg=3.0, depth_mm=4.0, scale=0.03)
+    return folder, rig_file(tmp_path / "rig.yaml", **FAULTS)
+
+
+def on_rig(folder, faulty, rig=None):
+    header = {} if rig is None else {"rig": read_rig(rig).digest, "rig_file": str(rig)}
+    return fit_file(folder / "fits", digest=read(faulty).digest, material="S0", law="neo-hookean",
+                    parameters=parameters("neo-hookean"), header=header)  # fmt: skip
+
+
+def test_beams_of_a_fit_on_a_known_rig_are_simulated_on_it(tmp_path, faulty):
+    """They were simulated as the lab states the rig, with no more than the fit's note that it differs."""
+    experiment, rig = faulty
+    found = {}
+    for name, options in (("on", ["--rig", str(rig)]), ("off", [])):
+        out = tmp_path / name
+        on_rig(out, experiment, rig if options else None)
+        ended = RUNNER.invoke(app, [str(experiment), "--fits", str(out), "--no-run", "--model", "neo-hookean",
+                                    *options])  # fmt: skip
+        assert ended.exit_code == 0, ended.output
+        (found[name],) = table(out / "table.csv").values()
+    assert float(found["on"]["dice"]) > 0.998 > 0.9 > float(found["off"]["dice"])
+    assert float(found["on"]["hd95_mm"]) < 0.05 < 2.0 < float(found["off"]["hd95_mm"])
+    assert float(found["on"]["node_hd95_mm"]) < float(found["off"]["node_hd95_mm"])
+    # neither what the grip hides of the longer beam, 8 % of it, nor a section that is enlarged too
+    assert float(found["on"]["volume_difference_percent"]) < 0.2
+    text = (tmp_path / "on" / "table.md").read_text(encoding="utf-8")
+    assert "corrected for what the rig is known to do: clamp-tilt" in text
+    assert f"--rig {rig}" in text
+    assert "as the lab states them" not in text
+    assert "as the lab states them" in (tmp_path / "off" / "table.md").read_text(encoding="utf-8")
+
+
+def test_what_both_grips_hide_of_a_beam_is_not_compared(tmp_path):
+    experiment = on_a_faulty_rig(
+        tmp_path / "held", tilt_deg=0.0, depth_mm=4.0, scale=0.0, supports="clamped-clamped"
+    )
+    rig = rig_file(tmp_path / "rig.yaml", grip_length=("rig", "depth_mm", 4.0))
+    on_rig(tmp_path, experiment, rig)
+    ended = RUNNER.invoke(app, [str(experiment), "--fits", str(tmp_path), "--no-run", "--model",
+                                "neo-hookean", "--rig", str(rig)])  # fmt: skip
+    assert ended.exit_code == 0, ended.output
+    (row,) = table(tmp_path / "table.csv").values()
+    assert float(row["dice"]) > 0.998
+    assert float(row["volume_difference_percent"]) < 0.2
+
+
+def test_a_fit_and_a_rig_that_are_not_of_each_other_are_refused(tmp_path, faulty):
+    experiment, rig = faulty
+    other = rig_file(tmp_path / "other.yaml", clamp_tilt=("rig", "angle_deg", 1.0))
+    for made, given, says in (
+        (rig, None, f"header.rig: expected the same --rig that it was made with, {rig}"),
+        (rig, other, f"header.rig: expected the same --rig that it was made with, {rig}"),
+        (None, rig, "header.rig: expected no --rig, since this fit was made without one"),
+    ):
+        on_rig(tmp_path / "fits", experiment, made)
+        options = ["--rig", str(given)] if given else []
+        ended = RUNNER.invoke(app, [str(experiment), "--fits", str(tmp_path / "fits"), "--no-run",
+                                    "--model", "neo-hookean", *options])  # fmt: skip
+        assert ended.exit_code == 2
+        assert says in ended.output
+        assert len(ended.output.strip().splitlines()) == 1
+    missing = RUNNER.invoke(app, [str(experiment), "--rig", str(tmp_path / "none.yaml")])
+    assert missing.exit_code == 2
+    assert "none.yaml" in missing.output
+
+
+def test_missing_fits_are_made_on_the_rig(tmp_path, faulty, monkeypatch):
+    experiment, rig = faulty
+    asked = []
+
+    def run(tasks, **_):
+        asked.extend(tasks)
+        raise InputError("no fit here")
+
+    monkeypatch.setattr("calibration.study.run", run)
+    monkeypatch.chdir(tmp_path)
+    RUNNER.invoke(app, [str(experiment), "--rig", str(rig), "--model", "neo-hookean"])
+    (task,) = asked
+    assert task.store().header["rig"] == read_rig(rig).digest
+    assert task.store().header["rig_file"] == str(rig)
 
 
 def test_folder_that_holds_no_fits_is_refused(tmp_path, experiment):
