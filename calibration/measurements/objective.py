@@ -34,9 +34,13 @@ class ModelObjective(Generic[Model]):
 
     The priors of the law's coordinates belong to the problem and are left out here. Extras of the baseline (a
     release time, a test's own deviation) are not coordinates of the law; they are profiled. `linearise` fits
-    them (e0) at its point; `residuals` are linear in them about it and are minimised over e for each u:
+    them (e0) at its point u0; `residuals` follow their best values to first order, e1 = e0 + E (u - u0), and
+    are linear in them about these, minimised over e for each u:
 
-        |r(u)|^2 = min_e |z(u, e0) + A (e - e0)|^2,    A = dz/de with the rows of the extras' priors.
+        |r(u)|^2 = min_e |z(u, e1) + A (e - e1)|^2,    A = dz/de with the rows of the extras' priors.
+
+    With e0 in place of e1 a modulus that moves puts a vibration out of phase, which A undoes to first order
+    only: where a law does not fit, chi-square then falls on both sides of its minimum.
 
     Parameters
     ----------
@@ -58,6 +62,7 @@ class ModelObjective(Generic[Model]):
         self.name = name
         self.frozen = frozen
         self.extras = np.array([e.centre for e in baseline.extras])
+        self._follow = np.zeros((len(self.extras), baseline.first_extra))
         self._at: State | None = None
         self._basis = np.zeros((self.size(), 0))
 
@@ -77,8 +82,11 @@ class ModelObjective(Generic[Model]):
         return own + [""] * len(self.model.baseline.extras)
 
     def state(self, u: Array) -> State:
-        """State of the model at u (n,), with the extras of the last `linearise`."""
-        return State(u=np.concatenate([u, self.extras]))
+        """State of the model at u (n,), with the extras of the last `linearise`, which follow u."""
+        if self._at is None:
+            return State(u=np.concatenate([u, self.extras]))
+        moved = np.asarray(u) - self._at.u[: self.model.baseline.first_extra]
+        return State(u=np.concatenate([u, self.extras + self._follow @ moved]))
 
     def linearise(self, u: Array, *, rough: bool = False) -> bool:
         """Update nuisances, discretisation errors and extras at u (n,); False if u has no solution.
@@ -88,6 +96,8 @@ class ModelObjective(Generic[Model]):
         """
         if self.frozen:
             return True
+        if rough:
+            self._at = None
         try:
             self.model.update_nuisances(self.state(u), rough=rough)
             if not rough:
@@ -136,6 +146,8 @@ class ModelObjective(Generic[Model]):
         if not len(self.extras):
             return
         sds = np.array([e.sd for e in self.model.baseline.extras])
+        self.extras = self.state(u).u[self.model.baseline.first_extra :]
+        self._at = None
         for _ in range(EXTRA_STEPS):
             step = self._linearise_extras(self.state(u))
             if np.abs(step / sds).max() < EXTRA_ENOUGH:
@@ -145,10 +157,13 @@ class ModelObjective(Generic[Model]):
     def _linearise_extras(self, state: State) -> Array:
         """Update the derivatives by the extras at a state; return their Gauss-Newton step, shape (e,)."""
         found = self.model.linearise(state, ())
-        columns = self._own(found.by_u[:, self.model.baseline.first_extra :].T).T
+        law, columns = np.hsplit(self._own(found.by_u.T).T, [self.model.baseline.first_extra])
+        wanted = np.column_stack([self._own(found.z[None])[0], law])
+        step = -np.linalg.lstsq(columns, wanted, rcond=None)[0]
         self._at = state
         self._basis = np.linalg.qr(columns)[0]
-        return np.asarray(-np.linalg.lstsq(columns, self._own(found.z[None])[0], rcond=None)[0])
+        self._follow = step[:, 1:]
+        return np.asarray(step[:, 0])
 
     def _own(self, rows: Array) -> Array:
         """Residuals (batch, m) of the model, without the rows of the priors of the law and of specimens."""

@@ -126,12 +126,13 @@ def test_nothing_to_fit_is_one_sentence(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_bar_at_rest() -> None:
+def test_the_bar_in_vibration_and_at_rest() -> None:
+    """An elastic bar neither relaxes nor creeps, as this one does: the fit ends, and says what it lacks."""
     folder = measured() / "real" / "clamped-beam-dragonskin10" / "experiment"
     found = calibrate(measurements(read(folder), "dragonskin10", NEO))
-    assert found.status == "converged"
-    # published static fits: E of 267 to 298 kPa; here, one trial each: 250 to 279 (studies/release)
-    assert 250e3 < 3.0 * found.shear_modulus < 298e3
+    assert found.status == "lack of fit"
+    # E of gravity-a: 279 kPa by its settled pose, 293 by its frequency (studies/release), which weighs more
+    assert 279e3 < 3.0 * found.shear_modulus < 298e3
 
 
 def test_the_factory_takes_a_card_with_a_negative_second_constant(tmp_path: Path) -> None:
