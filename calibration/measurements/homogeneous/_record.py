@@ -230,8 +230,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
         scatter_points=_scatter_points(trial, sd[kept], used),
-        ranges={"stretch": (float(trial.stretch.min()), float(trial.stretch.max()))}
-        | ({} if trial.time is None else {"time_s": (float(trial.time[0]), float(trial.time[-1]))}),
+        ranges=_ranges(trial, used if used.any() else ~used),
         course=None
         if furthest is None
         else course_of(trial, np.concatenate(firsts), np.concatenate(counts), furthest, holds),
@@ -240,6 +239,12 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
 
 
 _AVERAGED = ("stretch", "stress", "time", "turn", "peak", "rate")
+
+
+def _ranges(trial: CouponTrial, used: NDArray[np.bool_]) -> dict[str, tuple[float, float]]:
+    """Ranges of a trial's points that are compared, by the quantity's name in files."""
+    measured = {"stretch": trial.stretch} | ({} if trial.time is None else {"time_s": trial.time})
+    return {name: (float(x[used].min()), float(x[used].max())) for name, x in measured.items()}
 
 
 def _unloading(trial: CouponTrial, b: Stroke) -> NDArray[np.bool_]:

@@ -77,6 +77,9 @@ def test_beyond_half_of_the_height_nothing_is_compared() -> None:
     model = press_model(both(sliding, strain=ramps(1, top=0.66)))
     assert all(r.stretch.min() >= 0.5 for r in model.records)
     assert any("up to a strain of 0.5" in r for r in model.remarks())
+    # cards state what they hold for: they said 0.34
+    low, high = model.valid_range(Candidate(effect="platen-bonding"))["stretch"]
+    assert (low, high) == pytest.approx((0.5, 1.0), abs=0.01)
 
 
 def test_amplitude_zero_is_the_baseline() -> None:
