@@ -134,7 +134,7 @@ def all_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
         return f"no experiment of the catalogue parts {names}"
     apart = float(np.sqrt(best.separation))
     sure = _sure(best, best.separation)
-    return f"{best.sentence}: {names} part there by {apart:.0f} standard deviations{sure}"
+    return f"{best.sentence}: {names} part there by {_deviations(apart)}{sure}"
 
 
 def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
@@ -147,8 +147,8 @@ def most_parted(best: Advice, explanations: Sequence[Explanation]) -> str:
     left = [n for n in others if n not in parted]
     rest = f"; nothing of the catalogue parts it from {', '.join(left)}" if left else ""
     return (
-        f"{best.sentence}: {first} parts there from {', '.join(parted)} by {apart:.0f} standard"
-        f" deviations{_sure(best, apart**2)}{rest}"
+        f"{best.sentence}: {first} parts there from {', '.join(parted)} by {_deviations(apart)}"
+        f"{_sure(best, apart**2)}{rest}"
     )
 
 
@@ -156,6 +156,10 @@ def _told_apart(explanations: Sequence[Explanation]) -> list[str]:
     """Names of each explanation's effects, without those common to all."""
     common = set.intersection(*(set(e.names) for e in explanations))
     return [" + ".join([n for n in e.names if n not in common] or e.names) for e in explanations]
+
+
+def _deviations(apart: float) -> str:
+    return f"{apart:.0f} standard deviation{'s' if round(apart) != 1 else ''}"
 
 
 def _sure(best: Advice, separation: float) -> str:

@@ -68,7 +68,8 @@ def pattern(name: str, kind: str) -> str:
 def headline(finding: Finding) -> str:
     """Title of the verdict."""
     if finding.verdict == "ambiguous" and finding.certain:
-        return "One cause found, another not identified"
+        several = "One cause" if len(finding.certain) == 1 else "Several causes"
+        return f"{several} found, another not identified"
     return HEADLINE[finding.verdict]
 
 

@@ -196,8 +196,8 @@ class CompressionModel(HomogeneousModel):
             *super().remarks(),
             f"cylinders taken as {size} (diameter x height){unstated};"
             " only the quotient counts, and only where platens hold",
-            "platens that hold in part are taken between free and bonded ones, which are simulated; Coulomb"
-            " friction itself is not",
+            "platens that hold in part are taken between free (0) and bonded ones (1), which are simulated,"
+            " and up to 1.1, since the simulation has an error; Coulomb friction itself is not simulated",
         ]
         cut = self._cut()
         if cut:

@@ -35,6 +35,12 @@ def test_what_all_have_is_not_said(names: tuple[str, ...], first: str, others: s
     )
 
 
+def test_one_standard_deviation() -> None:
+    few = explanations("void", "tilt")
+    said = "part there by 1 standard deviation, which will help but may not settle it"
+    assert all_parted(advised(1.2), few) == f"turn it over: void, tilt {said}"
+
+
 def test_what_nothing_parts_is_said_in_the_same_words() -> None:
     few = explanations("grip void", "grip tilt", "grip creep")
     assert most_parted(advised(100.0, 0.0), few).endswith("; nothing of the catalogue parts it from creep")

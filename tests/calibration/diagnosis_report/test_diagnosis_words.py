@@ -10,6 +10,7 @@ from diagnosis_cases import diagnosis
 from calibration.diagnosis.drawing import label, label_of_causes
 from calibration.diagnosis.report._evidence import bars
 from calibration.diagnosis.report._units import quantity_and_unit
+from calibration.diagnosis.report._words import headline
 
 
 @pytest.mark.parametrize(
@@ -50,6 +51,15 @@ def test_rivals_are_marked_too() -> None:
     named = [b for b in bars(made.finding) if b.named]
     assert {b.name for b in named} == {"bend", "twin"}
     assert all(b.behind is not None and b.behind <= 6.0 for b in named)
+
+
+def test_the_title_says_how_many_are_certain() -> None:
+    made, _ = diagnosis("ambiguous")
+    sets = (("grip", "bend", "void"), ("grip", "bend", "twin"))
+    two = replace(made.finding, equivalent=sets)
+    assert headline(two) == "Several causes found, another not identified"
+    one = replace(made.finding, equivalent=tuple(s[1:] for s in sets))
+    assert headline(one) == "One cause found, another not identified"
 
 
 def test_what_was_only_screened_has_its_gain_to_first_order() -> None:
