@@ -1,7 +1,6 @@
 """Where a fit over time of made indentations without noise is moved from the truth to, to first order.
 
-    python -m studies.calibration.shift 101 103 118              # a minute, most of it the first seed
-    python -m studies.calibration.shift 101 103 118 --plain      # elastic curves with their mesh error
+    python -m studies.calibration.shift 101 103 118        # a minute, most of it the first seed
 
 The model at the true parameters less the forces of `benchmarks.blind.timed`, weighed as the fit weighs them;
 a row a seed, changes of the logarithms of the free parameters in per cent, and their standard deviations.
@@ -25,7 +24,7 @@ from calibration.study.measurements import measurements
 STEP = 0.01  # of the logarithms
 
 
-def shift(seed: int, *, plain: bool = False) -> tuple[list[str], np.ndarray, np.ndarray]:
+def shift(seed: int) -> tuple[list[str], np.ndarray, np.ndarray]:
     """Names of the free parameters, their shifts and standard deviations."""
     case = draw_indentation(seed)
     with tempfile.TemporaryDirectory() as scratch:
@@ -34,7 +33,6 @@ def shift(seed: int, *, plain: bool = False) -> tuple[list[str], np.ndarray, np.
     law = parts.with_parts(parametrisation("neo-hookean"), ("prony:2",), experiment, "M")
     data = measurements(experiment, "M", law, workers=1)
     assert data.pokes is not None
-    data.pokes.model.curves.extrapolated = not plain
     problem = Problem(parametrisation=data.law, objectives=data.objectives)
     prony = case.solid.prony
     assert prony is not None
@@ -59,11 +57,10 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("seeds", type=int, nargs="+")
-    parser.add_argument("--plain", action="store_true", help="without extrapolation")
     given = parser.parse_args()
     shifts = []
     for seed in given.seeds:
-        names, moved, sd = shift(seed, plain=given.plain)
+        names, moved, sd = shift(seed)
         row = [f"{n} {100 * m:+.1f} ({100 * s:.1f})" for n, m, s in zip(names, moved, sd, strict=True)]
         print(seed, *row, sep="  ", flush=True)
         shifts.append(moved)

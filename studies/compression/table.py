@@ -83,6 +83,7 @@ def check(curves: PressCurves, fit: PressFit, refinement: float) -> float:
     (run,) = tisim.simulate([scene], workers=1)
     if not run.ok:
         return float("nan")
+    assert run.nominal_stress is not None
     return float(np.abs(curves.stress(stretches, fit.values) / run.nominal_stress - 1.0).max())
 
 

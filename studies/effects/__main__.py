@@ -107,7 +107,7 @@ def seen_in(model: MeasurementModel, effects: Mapping[str, EffectModel]) -> Iter
             key=lambda pair: -pair[1],
         )
         refit = np.linalg.lstsq(linear.by_u, -amplitude * linear.columns[:, k], rcond=None)[0]
-        changes = _changes(model, baseline.state, at_rest, refit, candidate, amplitude)
+        changes = _changes(model, baseline.state, at_rest, refit.astype(np.float64), candidate, amplitude)
         shown = [model.shown(i) for i in range(len(model.records))]
         drawn = [np.nan_to_num(c) for c in changes]
         drawn = [c if len(c) == len(s.x) else s.points(c) for s, c in zip(shown, drawn, strict=True)]

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,12 +85,18 @@ def compared(rod: tisim.Rod, depth: float) -> tuple[Array, Array, Array]:
     return simulated.time, simulated.rod_force[:, 2], np.interp(simulated.time, fine, found)
 
 
+def _prony(entry: Mapping[str, Any]) -> Prony:
+    """Relaxation of a stored force."""
+    stored = entry["push"]["prony"]
+    return Prony(fractions=tuple(stored["fractions"]), times=tuple(stored["times"]))
+
+
 def stored() -> None:
     """Prints what the stored forces of another code say."""
     store = load()
     step = store["thick, hold"]
     time, force = np.array(step["time"]), np.array(step["force"])
-    prony = Prony(**{k: tuple(v) for k, v in step["push"]["prony"].items()})
+    prony = _prony(step)
     at_once = float(step["push"]["course"]["pieces"][0]["duration"])
     deepest = float(step["push"]["course"]["pieces"][0]["to"])
     hold = time >= at_once
@@ -107,7 +114,7 @@ def stored() -> None:
         corners = np.concatenate([[0.0], np.cumsum([p["duration"] for p in pieces])])
         depths = np.concatenate([[0.0], [p["to"] for p in pieces]])
         time, force = np.array(entry["time"]), np.array(entry["force"])
-        own = Prony(**{k: tuple(v) for k, v in entry["push"]["prony"].items()})
+        own = _prony(entry)
         fine = np.unique(np.concatenate([np.linspace(0.0, corners[-1], 2001), time]))
         met = thresholds(float(depths.max()))
         springs = stiffnesses(met, np.asarray(curve(met)) ** FLAT)
