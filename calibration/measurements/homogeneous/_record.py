@@ -274,8 +274,8 @@ def _sd(
 ) -> Array:
     """Standard deviation of the means in bins [Pa], including the stretch error.
 
-    An error estimated from the scatter is at least SMALLEST_RELATIVE of the largest stress that is compared,
-    for any number of averaged points.
+    An error estimated from the scatter is at least SMALLEST_RELATIVE of the record's largest stress, for any
+    number of averaged points.
 
     Parameters
     ----------
@@ -328,16 +328,17 @@ def _own_sd(
         return np.asarray(trial.stress_sd / np.sqrt(samples))
     mine = used[b.points]
     return np.maximum(
-        unstated_sd(over[b.points][mine], trial.stress[b.points][mine], stress, count), _least_sd(trial, used)
+        unstated_sd(over[b.points][mine], trial.stress[b.points][mine], stress, count), _least_sd(trial)
     )
 
 
-def _least_sd(trial: CouponTrial, used: NDArray[np.bool_]) -> float:
+def _least_sd(trial: CouponTrial) -> float:
     """Least standard deviation of a stress that the lab does not state [Pa].
 
-    A curve that stiffens is many times larger where it is not compared.
+    A load cell is accurate to a fraction of its range, which held the whole record, not of each reading, or
+    of the part that is compared (studies/compression/diagnosis.md).
     """
-    return SMALLEST_RELATIVE * float(np.abs(trial.stress[used]).max(initial=0.0))
+    return SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0))
 
 
 ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed
@@ -349,7 +350,7 @@ def _scatter_points(trial: CouponTrial, sd: Array, used: NDArray[np.bool_]) -> i
         return 0
     if len(np.unique((trial.stretch if trial.time is None else trial.time)[used])) < FEWEST:
         return ASSUMED
-    scatters = float(np.median(sd)) > 1.01 * _least_sd(trial, used)
+    scatters = float(np.median(sd)) > 1.01 * _least_sd(trial)
     return int(np.count_nonzero(used)) if scatters else 0
 
 

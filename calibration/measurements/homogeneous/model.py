@@ -375,7 +375,7 @@ class HomogeneousModel(MeasurementModel):
             typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
             found.append(
                 f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the largest stress that is compared; its"
+                " scatter about a smooth curve, at least 0.5 % of a record's largest stress; its"
                 f" median is {100 * typical:.2g} %. Where points scatter by less about a curve than such an"
                 " error, a reduced chi-square far below 1 is no fault"
             )
@@ -432,7 +432,7 @@ class HomogeneousModel(MeasurementModel):
         if len(stated) < len(self.records):
             parts.append(
                 "where the lab states none, an error from the scatter about a smooth curve, at least 0.5 % of"
-                " the largest stress that is compared"
+                " the largest stress of the record"
             )
         return (
             f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "

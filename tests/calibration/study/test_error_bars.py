@@ -80,45 +80,33 @@ def test_repeats_of_a_compression_test_do_not_lead_the_search_astray(stated: boo
         assert found.shear_modulus == pytest.approx(G, rel=0.04)
 
 
-@pytest.mark.parametrize("noise", [0.001, 0.01])
+@pytest.mark.parametrize("noise", [0.001, 0.05])
 @pytest.mark.parametrize("timed", [False, True])
-def test_unstated_errors_are_of_the_part_of_a_compression_test_that_is_compared(
+def test_an_unstated_error_is_the_scatter_of_the_compared_part_or_of_the_whole_range(
     noise: float, timed: bool
 ) -> None:
-    """Beyond a strain of 0.5 the curve stiffens and is noisier: neither the least error, nor the scatter."""
+    """Noise beyond a strain of 0.5 is not scatter; the least error is of the range that was measured."""
 
     def model(strain: Array) -> CompressionModel:
         rng = np.random.default_rng(20)
-        stress = uniaxial(1.0 - strain) * np.where(strain > 0.5, 4.0, 1.0)
-        white = noise * 3.5 * G * np.where(strain > 0.5, 20.0, 1.0) * rng.standard_normal(strain.size)
-        test = trial("c", 1.0 - strain, stress + white, time=100.0 * strain)
+        white = noise * 3.5 * G * np.where(strain > 0.5, 3.0, 1.0) * rng.standard_normal(strain.size)
+        test = trial("c", 1.0 - strain, uniaxial(1.0 - strain) + white, time=100.0 * strain)
         law = with_parts(parametrisation("ogden"), ("prony:1",) if timed else (), made(test), "M")
         return CompressionModel(made(test), baseline=Baseline.of_law([test], law))
 
     whole = np.linspace(0.0, 0.7, 71)
-    (long,) = model(whole).records
-    (short,) = model(whole[:51]).records
+    measured = model(whole)
+    (long,), (short,) = measured.records, model(whole[:51]).records
     assert long.points == short.points == 51
-    largest = np.abs(short.stress).max()
-    assert np.allclose(short.sd, 0.005 * largest) == (noise == 0.001)
-    assert long.sd == pytest.approx(short.sd, rel=0.02)
-    assert long.scatter_points == short.scatter_points == (0 if noise == 0.001 else 51)
-
-
-def test_intervals_of_a_compression_test_are_as_if_it_ended_where_it_is_compared() -> None:
-    """A sd of 0.5 % of the stress at 0.7, where it is tenfold, gave a reduced chi-square of 0.01."""
-    rng = np.random.default_rng(21)
-    strain = np.linspace(0.0, 0.7, 71)
-    stress = uniaxial(1.0 - strain) * np.where(strain > 0.5, 4.0, 1.0)
-    sd = 0.006 * 3.5 * G
-    noisy = [stress + rng.normal(0.0, sd, strain.size) for _ in range(20)]
-    found = [fit([trial("c", 1.0 - strain, one)]) for one in noisy]
-    stated = [fit([trial("c", 1.0 - strain, one, stress_sd=sd)]) for one in noisy]
-    assert np.median([f.reduced_chi2 for f in found]) == pytest.approx(1.0, abs=0.25)
-    assert np.median([f.shear_modulus_sd for f in found]) == pytest.approx(
-        np.median([f.shear_modulus_sd for f in stated]), rel=0.15
-    )
-    assert sum(holds(f) for f in found) >= 17
+    if noise == 0.001:
+        (one,) = measured.trials
+        assert isinstance(one, CouponTrial)
+        assert np.allclose(long.sd, 0.005 * np.abs(one.stress).max())
+        assert np.allclose(short.sd, 0.005 * np.abs(short.stress).max())
+        assert long.scatter_points == short.scatter_points == 0
+    else:
+        assert long.sd == pytest.approx(short.sd, rel=0.02)
+        assert long.scatter_points == short.scatter_points == 51
 
 
 def test_two_ogden_terms_end_at_the_least_chi_square_with_intervals_of_the_likelihood() -> None:
