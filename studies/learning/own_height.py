@@ -1,4 +1,4 @@
-"""The surrogate whose depths are shares of each block's own height: for `learn.train --plugin`, to compare."""
+"""The surrogate whose depths are shares of each block's height: for `learn.train --plugin`, to compare."""
 
 from __future__ import annotations
 
