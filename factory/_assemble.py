@@ -311,7 +311,8 @@ def _block_arrays(plan: Plan, specs: Mapping[str, Spec]) -> dict[str, NDArray[An
         "grid_rest": np.array([grid_points(block) for block in plan.blocks]),
         "level_depth": np.array([level_depths(block[2]) for block in plan.blocks]),
     }
-    return {name: rows[0] if specs[name].rows == "fixed" else rows for name, rows in arrays.items()}
+    one = {name for name, spec in specs.items() if spec.rows == "fixed"}
+    return {name: rows[0] if name in one else rows for name, rows in arrays.items()}
 
 
 def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
