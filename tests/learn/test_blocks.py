@@ -22,6 +22,7 @@ from learn.data import MemoryDataset, Store, open_store, split_of, statistics
 from learn.errors import InputError
 from learn.evaluation import evaluation, predict_part, summarise
 from learn.models import Scenes, make_model, pokes_of, scene_on
+from learn.models._encoder import _to_height
 from learn.page.content import content_of
 from learn.training import Recipe, Trainer
 from learn.validity import domain_of
@@ -129,6 +130,18 @@ def test_the_network_tells_heights_apart(store: Store) -> None:
         with torch.no_grad():
             a, b = model.encode(low).code, model.encode(high).code
         assert torch.allclose(a, b) == alike
+
+
+def test_depths_are_in_units_of_the_mean_height(store: Store) -> None:
+    """A level keeps its depth in millimetres; below the base, on which the tissue is fixed, all is rigid."""
+    rows = np.arange(store.frames)
+    sizes = statistics(MemoryDataset(store, rows).batches(64), store)
+    assert sizes.block_height == pytest.approx(np.mean([SIZES[k][2] for k in store.shape[store.frame_poke]]))
+    levels = torch.arange(128)
+    one = ((levels >= 40) & (levels < 80)).float().reshape(1, 1, 128)
+    np.testing.assert_array_equal(_to_height(one, 2.0)[0, 0], (levels >= 80).float())
+    shallow = (levels >= 20) & (levels < 40) | (levels >= 64)
+    np.testing.assert_array_equal(_to_height(one, 0.5)[0, 0], shallow.float())
 
 
 def test_a_dataset_of_one_height_is_encoded_as_by_its_own(tmp_path: Path) -> None:
