@@ -51,8 +51,33 @@ class Sampled:
         return np.asarray(np.add.reduceat(values[self.index], self.starts, axis=0) / self.counts[:, None])
 
 
+class OfBeam:
+    """What a record of markers takes from its trial; see `calibration.measurements._model.Record`."""
+
+    trial: BeamTrial
+
+    @property
+    def name(self) -> str:
+        return self.trial.id
+
+    @property
+    def material(self) -> str:
+        return self.trial.material
+
+    @property
+    def specimen(self) -> str:
+        return self.trial.specimen or self.trial.material
+
+    @property
+    def ranges(self) -> Mapping[str, tuple[float, float]]:
+        length = 1e3 * self.trial.free_length
+        times = [c.time for c in self.trial.captures if c.outline is not None]
+        times += [float(m.time[-1]) for m in self.trial.markers]
+        return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Record:
+class Record(OfBeam):
     """The markers of one trial.
 
     Its rows are, for each marker in x and then in z, the sample before the release and the means after it.
@@ -91,18 +116,6 @@ class Record:
     sd: float
 
     @property
-    def name(self) -> str:
-        return self.trial.id
-
-    @property
-    def material(self) -> str:
-        return self.trial.material
-
-    @property
-    def specimen(self) -> str:
-        return self.trial.specimen or self.trial.material
-
-    @property
     def relaxation_time(self) -> float:
         """Relaxation time of the stiffness-proportional damping with this damping ratio [s]."""
         return self.damping_ratio * self.period / np.pi
@@ -124,10 +137,6 @@ class Record:
             "load": self.load,
             "trial": self.name,
         }
-
-    @property
-    def ranges(self) -> Mapping[str, tuple[float, float]]:
-        return ranges_of(self.trial)
 
     @property
     def behind_face(self) -> Rows:
@@ -210,14 +219,6 @@ class Record:
                 first = self.sd if np.isfinite(self.held[i, axis]) else np.inf
                 parts.append(np.concatenate([[first], self.sd / np.sqrt(s.counts)]))
         return np.concatenate(parts)
-
-
-def ranges_of(trial: BeamTrial) -> Mapping[str, tuple[float, float]]:
-    """See `calibration.measurements._model.Record`."""
-    length = 1e3 * trial.free_length
-    times = [c.time for c in trial.captures if c.outline is not None]
-    times += [float(m.time[-1]) for m in trial.markers]
-    return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
 
 
 def hung_mass(trial: BeamTrial) -> float:

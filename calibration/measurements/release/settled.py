@@ -20,7 +20,7 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
 from calibration.measurements._state import State
-from calibration.measurements.release._record import ranges_of
+from calibration.measurements.release._record import OfBeam
 from calibration.measurements.release.objective import AtRest, MarkerObjective
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ SETTLED = 1.0 / 3.0  # last part of a record, whose mean is the position at rest
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SettledRecord:
+class SettledRecord(OfBeam):
     """Markers of one trial at rest; its rows are x, y and z of each marker.
 
     Attributes
@@ -43,28 +43,12 @@ class SettledRecord:
     markers: MarkerObjective
 
     @property
-    def name(self) -> str:
-        return self.trial.id
-
-    @property
-    def material(self) -> str:
-        return self.trial.material
-
-    @property
-    def specimen(self) -> str:
-        return self.trial.specimen or self.trial.material
-
-    @property
     def points(self) -> int:
         return self.markers.points
 
     @cached_property
     def groups(self) -> Mapping[str, str]:
         return {"material": self.material, "specimen": self.specimen, "trial": self.name}
-
-    @property
-    def ranges(self) -> Mapping[str, tuple[float, float]]:
-        return ranges_of(self.trial)
 
 
 class SettledModel(MeasurementModel):
