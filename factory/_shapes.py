@@ -5,7 +5,10 @@ An entry with the key `draw` gives that number of shapes, each length drawn unif
 
     {kind: cube, id: cube, draw: 12, side_mm: [6, 26]}
 
-They are drawn when the recipe is read, and are then shapes like any others.
+They are drawn when the recipe is read, and are then shapes like any others. With `cover_mm` in such an entry,
+the thicknesses of the tissue above them are spread evenly in their logarithm over that interval:
+
+    {kind: cylinder, id: disc, draw: 12, radius_mm: [6, 14], height_mm: [8, 29], cover_mm: [3, 24]}
 
 If a side of the recipe's `block_mm` is an interval, or an entry states a `block_mm` in place of the recipe's,
 each shape has a block of its own. Its sides are drawn together with the shape's lengths, so that it fits.
@@ -47,6 +50,7 @@ _MM = 1e-3
 _THINNEST_MM = 1.0  # least that tisim's meshes need above and beside an inclusion, and of it above the base
 _DIGITS = 2  # decimals of drawn lengths [mm]
 _DRAWS = 1000  # attempts to draw one shape, or its block, that fits
+_USES = {"block_mm": "the block around it", "cover_mm": "the tissue above it"}  # keys that no parameter has
 
 
 def _in_order(value: tuple[float, float]) -> tuple[float, float]:
@@ -138,6 +142,16 @@ def _shape_model(shape: RecipeShape) -> type[Shape]:
     return model
 
 
+def _check_names(shape: RecipeShape) -> None:
+    """Refuse a shape with a parameter whose key has another meaning in recipes."""
+    for key in (f"{p.name}_mm" for p in shape.parameters):
+        if key in _USES:
+            raise ValueError(
+                f"kind {shape.name}: expected another name of its parameter, since recipes use {key} "
+                f"for {_USES[key]}"
+            )
+
+
 def of_its_kind(value: object) -> object:
     """Validate a recipe's entry with the model of its kind."""
     return _as_model(value, _shape_model)
@@ -150,6 +164,7 @@ def _as_model(value: object, model: Callable[[RecipeShape], type[Strict]]) -> ob
     if not isinstance(kind, str) or kind not in known:
         names = ", ".join(repr(name) for name in known)
         raise PydanticCustomError("kind", f"expected as kind one of {names}, got {str(kind)[:40]!r}")
+    _check_names(known[kind])
     try:
         return model(known[kind]).model_validate(value)
     except ValidationError as error:
@@ -190,6 +205,10 @@ class Drawn(Strict):
         Prefix of their names: `ID-01`, `ID-02` and so on.
     draw : int
         Number of shapes.
+    cover_mm : (float, float) or None
+        Interval of the thickness of the tissue above them. Of the shapes within it, one under a thickness c
+        is kept with the probability min(cover_mm) / c: thicknesses that were spread evenly, as those over
+        cylinders of drawn heights, are then so in their logarithm.
 
     Each length is one number, or an interval from which it is drawn for each shape.
     """
@@ -197,6 +216,7 @@ class Drawn(Strict):
     kind: str
     id: Annotated[Name, Field(max_length=50)]
     draw: Annotated[int, Field(ge=1, le=10_000)]
+    cover_mm: Annotated[tuple[Positive, Positive], AfterValidator(_in_order)] | None = None
 
     def names(self) -> list[str]:
         """Names of the shapes."""
@@ -208,6 +228,15 @@ class Drawn(Strict):
         lengths = [f"{p.name}_mm" for p in inclusions.recipe_shapes()[self.kind].parameters]
         drawn = {length: _between(getattr(self, length), random) for length in lengths}
         return {"kind": self.kind, "id": name, **drawn}
+
+    def fault_of_cover(self, cover: float, random: np.random.Generator) -> str | None:
+        """Reason why a shape under this thickness [mm] is not taken; None if it is."""
+        if self.cover_mm is None:
+            return None
+        thin, thick = self.cover_mm
+        if not thin <= cover <= thick:
+            return f"the {cover:g} mm above it are not within cover_mm = {thin:g} to {thick:g}"
+        return None if random.uniform() * cover < thin else "it was not among those that are kept"
 
 
 def _between(length: float | tuple[float, float], random: np.random.Generator) -> float:
@@ -249,7 +278,12 @@ class _Ground(BaseModel):
     cover_mm: Natural
 
     def fitting(
-        self, draw: Callable[[], dict[str, Any]], sides: Sides | None, random: np.random.Generator, what: str
+        self,
+        draw: Callable[[], dict[str, Any]],
+        sides: Sides | None,
+        random: np.random.Generator,
+        what: str,
+        fault_of_cover: Callable[[float, np.random.Generator], str | None] = lambda *_: None,
     ) -> dict[str, Any]:
         """Draw a shape's entry and its block until the one fits in the other.
 
@@ -262,13 +296,16 @@ class _Ground(BaseModel):
         random : numpy.random.Generator
         what : str
             What is drawn, for the ValueError if nothing is found that fits.
+        fault_of_cover : callable
+            Reason why a shape under some thickness of tissue [mm] is not taken, or None.
         """
         fault = None
         for _ in range(_DRAWS):
             entry = draw()
             x, y, z = (_between(side, random) for side in sides or self.block_mm)
             room = Room(block_mm=(x, y, z), border_mm=self.border_mm, cover_mm=self.cover_mm)
-            fault = room.fault(_SHAPE.validate_python(entry))
+            shape = _SHAPE.validate_python(entry)
+            fault = room.fault(shape) or fault_of_cover(z - shape.top_mm, random)
             if fault is None:
                 return entry if sides is None else {**entry, "block_mm": room.block_mm}
         raise ValueError(f"{what}: none of {_DRAWS} drawn fits; of the last, {fault}")
@@ -296,6 +333,8 @@ def with_drawn_shapes(recipe: object) -> object:
         if not isinstance(entry, Mapping):
             found.append(entry)  # the model reports it
             continue
+        if (shape := inclusions.recipe_shapes().get(str(entry.get("kind")))) is not None:
+            _check_names(shape)
         random = np.random.default_rng([ground.seed, number])
         sides = (_own(entry, number) or ground.block_mm) if own_blocks else None
         if _states(entry, "draw"):
@@ -331,8 +370,14 @@ def _drawn_shapes(
         drawn = _DRAWN.validate_python(_without_block(entry))
     except ValidationError as error:
         raise nested_problems(error, under=("shapes", number)) from None
+    if drawn.cover_mm is not None and drawn.cover_mm[0] < ground.cover_mm:
+        raise ValueError(
+            f"shapes.{drawn.id}: cover_mm: expected at least the recipe's cover_mm = {ground.cover_mm:g}, "
+            f"got {drawn.cover_mm[0]:g}"
+        )
+    what = f"shapes.{drawn.id}"
     return [
-        ground.fitting(partial(drawn.one, name, random), sides, random, f"shapes.{drawn.id}")
+        ground.fitting(partial(drawn.one, name, random), sides, random, what, drawn.fault_of_cover)
         for name in drawn.names()
     ]
 

@@ -19,6 +19,7 @@ from factory._course import deepest, draw_course
 from factory._effects import in_one_law
 from factory._errors import InputError
 from factory._parts import part_entries
+from factory._sampling import level_depths
 from factory._similar import one_solve
 from factory.materials import (
     Card,
@@ -40,6 +41,7 @@ log = logging.getLogger(__name__)
 FORMAT = 1  # version of the store's format; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")
 _MM = 1e-3
+_DRAWS = 1000  # attempts to find a contact point above an inclusion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +185,9 @@ def make_plan(
                 shared = site < recipe.protocol.shared_sites
                 key = (shape, 0, site) if shared else (shape, 1 + level, site)
                 seed = _seed(recipe.seed, key)
-                scene = _scene(recipe, shape, inclusion, material, seed)
+                number = site if shared else site - recipe.protocol.shared_sites
+                over = recipe.protocol.is_over_inclusion(number)
+                scene = _scene(recipe, shape, inclusion, material, seed, over=over)
                 _check_path(recipe, shape, len(pokes), scene)
                 pokes.append(
                     PlannedPoke(
@@ -337,13 +341,18 @@ def _seed(root: int, key: Iterable[int]) -> int:
 
 
 def _place(recipe: Recipe, number: int) -> Inclusion:
-    """Inclusion of one shape at a random position on the base, at least `border_mm` from the sides."""
+    """Inclusion of one shape at its position on the base."""
+    shape = recipe.shapes[number]
+    return shape.standing(*_position(recipe, number))
+
+
+def _position(recipe: Recipe, number: int) -> tuple[float, float, float]:
+    """Position of a shape on the base [mm], `border_mm` or more from the sides, and its rotation [rad]."""
     shape = recipe.shapes[number]
     random = np.random.default_rng(_seed(recipe.seed, (number, 2**32 - 1)))
     room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_of(shape)[:2]]
     x, y = (float(v) for v in random.uniform(-1, 1, 2) * room)
-    angle = float(random.uniform(0, math.pi / 2)) if shape.turned else 0.0
-    return shape.standing(x, y, angle)
+    return x, y, float(random.uniform(0, math.pi / 2)) if shape.turned else 0.0
 
 
 def _size(recipe: Recipe, number: int) -> tuple[float, float, float]:
@@ -352,12 +361,36 @@ def _size(recipe: Recipe, number: int) -> tuple[float, float, float]:
     return width, length, height
 
 
-def _scene(recipe: Recipe, number: int, inclusion: Inclusion, material: Material, seed: int) -> Poke:
+def _site(
+    recipe: Recipe, number: int, inclusion: Inclusion, random: np.random.Generator, *, over: bool
+) -> tuple[float, float]:
+    """Draw a contact point [m] on the top face, or on that part of it which is right above the inclusion."""
+    shape, margin = recipe.shapes[number], recipe.protocol.margin_mm
+    room = np.array([side / 2 - margin for side in recipe.block_of(shape)[:2]])
+    if not over:
+        x, y = (float(v) * _MM for v in random.uniform(-1, 1, 2) * room)
+        return x, y
+    centre = np.array(_position(recipe, number)[:2])
+    low, high = np.maximum(-room, centre - shape.reach_mm), np.minimum(room, centre + shape.reach_mm)
+    column = level_depths(_size(recipe, number)[2])
+    for _ in range(_DRAWS if (low < high).all() else 0):
+        x, y = (float(v) * _MM for v in random.uniform(low, high))
+        points = np.stack([np.full_like(column, x), np.full_like(column, y), column], axis=1)
+        if inclusion.contains(points).any():
+            return x, y
+    raise InputError(
+        f"recipe {recipe.name}: protocol.over_inclusion: found no contact point above {shape.id} that is "
+        f"margin_mm = {margin:g} or more from the edges: expected a larger border_mm or a smaller margin_mm"
+    )
+
+
+def _scene(
+    recipe: Recipe, number: int, inclusion: Inclusion, material: Material, seed: int, *, over: bool
+) -> Poke:
     """Draw a poke of a shape from a seed: contact point, angle to the normal, heading and course."""
     protocol = recipe.protocol
     random = np.random.default_rng(seed)
-    room = [side / 2 - protocol.margin_mm for side in recipe.block_of(recipe.shapes[number])[:2]]
-    x, y = (float(v) * _MM for v in random.uniform(-1, 1, 2) * room)
+    x, y = _site(recipe, number, inclusion, random, over=over)
     angle = math.radians(float(random.uniform(0, protocol.max_angle_deg)))
     heading = float(random.uniform(0, 2 * math.pi))
     sine = math.sin(angle)

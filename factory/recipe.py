@@ -74,6 +74,8 @@ class Protocol(Strict):
         Contact points (with their directions) common to all material levels of a shape.
     own_sites : int
         Contact points drawn for each material level.
+    over_inclusion : float
+        Fraction of the contact points, in each of the two sets, that are drawn right above the inclusion.
     margin_mm : float
         Least distance of a contact point from the edges of the top face.
     max_angle_deg : float
@@ -89,6 +91,7 @@ class Protocol(Strict):
 
     shared_sites: Annotated[int, Field(ge=0, le=10_000)]
     own_sites: Annotated[int, Field(ge=0, le=10_000)]
+    over_inclusion: Annotated[float, Field(ge=0, le=1)] = 0.0
     margin_mm: Natural
     max_angle_deg: Annotated[float, Field(ge=0, le=45)]
     depth_mm: Positive
@@ -96,10 +99,17 @@ class Protocol(Strict):
     course: tuple[Piece, ...] = ()
 
     @model_serializer(mode="wrap")
-    def _without_an_empty_course(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Omit an empty course, so that the identity of recipes without one stays as it was."""
+    def _without_what_is_not_asked_for(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Omit later keys that are not used, so that the identity of recipes without them stays as it was."""
         written: dict[str, Any] = write(self)
-        return written if self.course else {k: v for k, v in written.items() if k != "course"}
+        later = ("course", "over_inclusion")
+        return {k: v for k, v in written.items() if k not in later or getattr(self, k)}
+
+    def is_over_inclusion(self, number: int) -> bool:
+        """True if the contact point of this number in its set is drawn above the inclusion."""
+        # spread evenly over the set, so that a part of a dataset has as many
+        first, last = (math.floor(k * self.over_inclusion + 1e-9) for k in (number, number + 1))
+        return last > first
 
     @model_validator(mode="after")
     def _driven(self) -> Self:

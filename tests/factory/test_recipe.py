@@ -312,10 +312,11 @@ def test_junk_in_any_place_is_valid_or_named(tmp_path: Path, where: tuple[Any, .
 
 
 def test_recipes_by_name() -> None:
-    names = ["blocks", "paper", "quick", "sample", "surrogate", "surrogate-law", "timed", "wide"]
+    names = ["blocks", "covers", "paper", "quick", "sample", "surrogate", "surrogate-law", "timed", "wide"]
     assert recipe_names() == names
     with pytest.raises(
-        InputError, match="--recipe papper: expected a path of a YAML file or one of: blocks, paper, q"
+        InputError,
+        match="--recipe papper: expected a path of a YAML file or one of: blocks, covers, paper",
     ):
         load_recipe("papper")
     with pytest.raises(InputError, match=r"cannot read nowhere\.yaml: No such file"):
