@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from factory._checks import FORCE_FLOOR
 from factory._cli import import_plugins
 from factory._features import own_solves
 from factory.reader import Dataset, open_dataset
@@ -209,7 +210,8 @@ def check_poke(data: Dataset, index: int) -> Iterator[FrameForces]:
         raise NotCheckedError("its mesh is not the one that this version of tisim makes")
     rod = _rod(data)
     tolerance = float(data.attributes["solver_tolerance"])
-    load = np.linalg.norm(poke.rod_force, axis=1)
+    # a rod that has been retracted presses with nothing, and forces of stored positions are rounded
+    load = np.maximum(np.linalg.norm(poke.rod_force, axis=1), FORCE_FLOOR)
     inside = _Inside(mesh, material, surface, poke.surface - poke.surface_rest, INSIDE * tolerance * load)
     held = np.zeros(mesh.n_nodes, dtype=bool)
     held[mesh.node_sets["base"]] = True

@@ -30,6 +30,7 @@ def check_out(store: Path, out: Path, *, overwrite: bool) -> None:
 
 def write_card(facts: Facts, out: Path) -> None:
     """Write the card's files (`FILES`) into a temporary folder, then move them to `out`."""
+    out = out.absolute()  # "." has no name
     out.parent.mkdir(parents=True, exist_ok=True)
     beside = out.with_name(f".{out.name}.partial")
     shutil.rmtree(beside, ignore_errors=True)

@@ -23,7 +23,8 @@ from tisim.course import Course
 
 PHASES = ("load", "hold", "retract", "reload", "rest")
 _MM = 1e-3
-_SAME = 1e-9  # relative to a course's duration or to a ramp: closer points coincide
+_SAME = 1e-9  # relative to a ramp: closer points coincide
+_ROUNDED = 1e-15  # relative error of a stored time
 _LONGEST = 1e9  # s
 
 
@@ -145,8 +146,8 @@ def phases(depths: NDArray[np.float64]) -> NDArray[np.uint8]:
 
 def pieces_at(times: NDArray[np.float64], moments: NDArray[np.float64]) -> NDArray[np.int64]:
     """Index of the piece of a course at each moment; a corner belongs to the piece that ends there."""
-    slack = _SAME * float(times[-1])
-    return np.minimum(np.searchsorted(times, moments - slack), len(times) - 1).astype(np.int64)
+    found = np.searchsorted(times * (1.0 + _ROUNDED), moments)
+    return np.minimum(found, len(times) - 1).astype(np.int64)
 
 
 def states_at(

@@ -104,7 +104,7 @@ class Shape(Strict):
     @property
     def lengths_mm(self) -> dict[str, float]:
         """Its parameters by name, without the unit [mm]."""
-        return {p.name: getattr(self, f"{p.name}_mm") for p in self._shape.parameters}
+        return {p.name: getattr(self, f"length_{k}") for k, p in enumerate(self._shape.parameters)}
 
     @property
     def reach_mm(self) -> float:
@@ -134,10 +134,10 @@ class Shape(Strict):
 def _shape_model(shape: RecipeShape) -> type[Shape]:
     """Pydantic model of one kind of inclusion, with its lengths as keys."""
     keys: dict[str, Any] = {"kind": (Literal[shape.name], ...)}
-    keys |= {
-        f"{p.name}_mm": (Positive if p.positive else Natural, ... if p.default is None else p.default)
-        for p in shape.parameters
-    }
+    for k, p in enumerate(shape.parameters):
+        default: Any = ... if p.default is None else p.default
+        # numbered, since a parameter may be called as an attribute here is ("top")
+        keys[f"length_{k}"] = (Positive if p.positive else Natural, Field(default, alias=f"{p.name}_mm"))
     model: type[Shape] = create_model(shape.name, __base__=Shape, **keys)
     return model
 
@@ -225,8 +225,10 @@ class Drawn(Strict):
 
     def one(self, name: str, random: np.random.Generator) -> dict[str, Any]:
         """Draw the entry of one shape, which need not fit."""
-        lengths = [f"{p.name}_mm" for p in inclusions.recipe_shapes()[self.kind].parameters]
-        drawn = {length: _between(getattr(self, length), random) for length in lengths}
+        drawn = {
+            f"{p.name}_mm": _between(getattr(self, f"length_{k}"), random)
+            for k, p in enumerate(inclusions.recipe_shapes()[self.kind].parameters)
+        }
         return {"kind": self.kind, "id": name, **drawn}
 
     def fault_of_cover(self, cover: float, random: np.random.Generator) -> str | None:
@@ -253,10 +255,11 @@ def _as_range(value: object) -> object:
 def _drawn_model(shape: RecipeShape) -> type[Drawn]:
     """Pydantic model of drawn shapes of one kind, with their lengths as keys."""
     keys: dict[str, Any] = {"kind": (Literal[shape.name], ...)}
-    for p in shape.parameters:
+    for k, p in enumerate(shape.parameters):
         one: Any = Positive if p.positive else Natural
         both = Annotated[tuple[one, one], BeforeValidator(_as_range), AfterValidator(_in_order)]
-        keys[f"{p.name}_mm"] = (both, ... if p.default is None else (p.default, p.default))
+        default: Any = ... if p.default is None else (p.default, p.default)
+        keys[f"length_{k}"] = (both, Field(default, alias=f"{p.name}_mm"))
     model: type[Drawn] = create_model(shape.name, __base__=Drawn, **keys)
     return model
 

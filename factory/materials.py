@@ -112,12 +112,15 @@ class Card(Strict):
             base = self.laws.of(BASE)
             assert base is not None
             moduli = laws.get(BASE).moduli(base)
-            return material_from_moduli(
-                law,
-                shear_modulus=moduli.shear_modulus,
-                bulk_modulus=moduli.bulk_modulus,
-                density=self.density,
-            )
+            try:
+                return material_from_moduli(
+                    law,
+                    shear_modulus=moduli.shear_modulus,
+                    bulk_modulus=moduli.bulk_modulus,
+                    density=self.density,
+                )
+            except ValueError as error:  # limits of a user's own law
+                raise InputError(f"law {law} does not take the moduli of {self.material}: {error}") from None
         return Material(law=law, parameters=parameters, density=self.density)
 
 

@@ -30,10 +30,11 @@ from factory.materials import (
     material_of,
 )
 from factory.recipe import Recipe
-from tisim import Block, Inclusion, Material, Poke, Rod
+from tisim import Block, Inclusion, Material, Poke, Rod, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
+from tisim.problems import check_scene
 from tisim.problems.indentation.kind import CONTACT, ELEMENT, leaves
 
 log = logging.getLogger(__name__)
@@ -169,8 +170,8 @@ def make_plan(
     Raises
     ------
     InputError
-        If the law is unknown, a card is missing, is invalid or does not fit the law or the recipe, or an
-        indenter would leave the block through a side.
+        If the law is unknown, a card is missing, is invalid or does not fit the law or the recipe, an
+        indenter would leave the block through a side, or tisim refuses a scene.
     """
     check_law(model)
     recipe = _with_levels(recipe, materials, levels)
@@ -189,6 +190,7 @@ def make_plan(
                 over = recipe.protocol.is_over_inclusion(number)
                 scene = _scene(recipe, shape, inclusion, material, seed, over=over)
                 _check_path(recipe, shape, len(pokes), scene)
+                _check_scene(recipe, len(pokes), scene)
                 pokes.append(
                     PlannedPoke(
                         index=len(pokes),
@@ -291,15 +293,18 @@ def _taken(card: Card) -> dict[str, Any]:
 
 
 def _added_code(materials: Sequence[Material], inclusions: Sequence[Inclusion]) -> dict[str, Any]:
-    """sha256 of the code of laws and inclusion shapes from outside tisim, under "extensions".
+    """sha256 of the code of laws, material parts and inclusion shapes from outside tisim: "extensions".
 
     Empty if there are none: versions then identify the code.
     """
     found = {f"law {m.law}": law for m in materials if (law := added(m.law)) is not None}
-    shapes = {f"inclusion {body.kind}": type(body) for body in inclusions}
+    kinds = {
+        **{f"inclusion {body.kind}": type(body) for body in inclusions},
+        **{f"part {part.name}": type(part) for m in materials for part in parts.of(m).values()},
+    }
     code = {
         **{name: digest_of_code(*vars(law).values()) for name, law in found.items()},
-        **{name: digest_of_code(kind) for name, kind in shapes.items() if not is_own(kind)},
+        **{name: digest_of_code(kind) for name, kind in kinds.items() if not is_own(kind)},
     }
     return {"extensions": dict(sorted(code.items()))} if code else {}
 
@@ -415,6 +420,15 @@ def _scene(
         refinement=recipe.refinement,
         **driven,
     )
+
+
+def _check_scene(recipe: Recipe, index: int, poke: Poke) -> None:
+    """Refuse what the solver would refuse, before hours of others are solved."""
+    try:
+        check_scene(index, poke)
+    except ValueError as error:
+        reason = str(error).removeprefix(f"scene {index}: ")
+        raise InputError(f"recipe {recipe.name}: poke {index}: {reason}") from None
 
 
 def _check_path(recipe: Recipe, number: int, index: int, poke: Poke) -> None:

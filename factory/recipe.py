@@ -32,6 +32,7 @@ from factory._shapes import (
     of_its_kind,
     with_drawn_shapes,
 )
+from tisim.mesh.indentation import CLEARANCE
 
 # As experiments name materials, since `calibration.fit` names a card after its material.
 Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
@@ -218,12 +219,12 @@ def _check_protocol(recipe: Recipe, shape: Shape) -> None:
         )
     if 2 * protocol.margin_mm >= min(sides):
         raise ValueError(f"{whose}protocol.margin_mm: expected less than half of the block's sides")
-    footprint = recipe.rod.radius_mm / math.cos(math.radians(protocol.max_angle_deg))
-    if protocol.margin_mm < footprint:
+    clear = CLEARANCE * recipe.rod.radius_mm / math.cos(math.radians(protocol.max_angle_deg))
+    if protocol.margin_mm < clear:
         raise ValueError(
-            f"protocol.margin_mm: expected at least {footprint:.3g} mm, so that the rod of radius "
-            f"{recipe.rod.radius_mm:g} mm lands within the top at up to {protocol.max_angle_deg:g} degrees, "
-            f"got {protocol.margin_mm:g}"
+            f"protocol.margin_mm: expected at least {clear:.3g} mm, so that the rod of radius "
+            f"{recipe.rod.radius_mm:g} mm and the fine mesh around it lie within the top at up to "
+            f"{protocol.max_angle_deg:g} degrees, got {protocol.margin_mm:g}"
         )
 
 

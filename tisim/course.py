@@ -159,8 +159,10 @@ class Course:
             raise FieldError(f"{field}.frames", "at least one time, or None", self.frames)
         for time in self.frames:
             check_number(f"{field}.frames", time, within, lambda v: first <= v <= last)
-        if any(b <= a for a, b in zip(self.frames, self.frames[1:], strict=False)):
-            raise FieldError(f"{field}.frames", "times that rise", self.frames)
+        for pair in zip(self.frames, self.frames[1:], strict=False):
+            if pair[1] - pair[0] <= SAME * self.duration:  # closer ones would be one stop, and so one frame
+                wanted = f"times that rise, each by more than {SAME:g} of the course's {self.duration:g} s"
+                raise FieldError(f"{field}.frames", wanted, pair)
 
     def end_at(self, time: float) -> float | None:
         """End of a piece that is equal to `time` [s] but for rounding; None if there is none."""

@@ -16,7 +16,7 @@ from tisim.mesh import Mesh
 from tisim.parallel import pool
 from tisim.parallel.chunks import Chunk, make_chunks, own_mesh, solve_chunk
 from tisim.parallel.threads import one_thread
-from tisim.problems._checks import check_scene
+from tisim.problems import check_scene
 from tisim.result import Result
 from tisim.scene import Scene
 

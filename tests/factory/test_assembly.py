@@ -126,6 +126,26 @@ def test_a_surface_that_holds_no_equilibrium_is_counted(
     assert "poke 0: no equilibrium was found inside the surface of frame 1" in done.output
 
 
+def test_a_rod_that_has_been_retracted_presses_with_nothing(
+    simulated: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second frame at rest, as after an elastic retraction."""
+    whole = Dataset.poke
+
+    def released(data: Dataset, index: int) -> PokeData:
+        poke = whole(data, index)
+        surface, forces = poke.surface.copy(), {}
+        surface[1] = poke.surface_rest
+        for name in ("rod_force", "base_force"):
+            forces[name] = getattr(poke, name) * [[1.0], [0.0]]
+        tip = poke.rod_tip - [[0.0], [5e-3]] * poke.direction
+        return dataclasses.replace(poke, surface=surface, rod_tip=tip, **forces)
+
+    monkeypatch.setattr(Dataset, "poke", released)
+    found = list(check_poke(open_dataset(simulated), 0))
+    assert [frame.faults(5e-4) for frame in found] == [[], []]
+
+
 def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
     simulated: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

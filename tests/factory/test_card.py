@@ -19,6 +19,7 @@ import zarr
 
 import factory.card
 from factory import _card, _card_files, _paper, open_dataset
+from factory._card_files import FILES
 from factory._store import LEDGER, MANIFEST
 from factory.plan import Plan
 from tests.factory.conftest import Builder, digest, run_app
@@ -230,6 +231,15 @@ def test_places_that_it_does_not_write_to(store: Path, tmp_path: Path) -> None:
     assert digest(store) == before
     result = run_app(factory.card.app, tmp_path / "nothing.zarr", "--out", tmp_path / "card")
     assert (result.exit_code, result.stderr) == (2, f"error: {tmp_path / 'nothing.zarr'}: no such dataset\n")
+
+
+def test_the_current_folder_is_a_place(
+    finished_store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = run_app(factory.card.app, finished_store, "--out", ".")
+    assert result.exit_code in (0, 1), result.stderr  # the stand-in's numbers have faults
+    assert set(FILES) <= {path.name for path in tmp_path.iterdir()}
 
 
 def test_overwriting_leaves_other_files_alone(card: Path, quick_store: Path, tmp_path: Path) -> None:

@@ -76,6 +76,21 @@ def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
     assert str(tmp_path / "S0.yaml") in str(caught.value)
 
 
+def test_a_law_that_refuses_the_moduli_of_a_card_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tiny: Recipe
+) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise ValueError("bulk must be above 50 mu")
+
+    content = yaml.safe_load((ROOT / "datasets" / "materials" / "S0.yaml").read_text())
+    del content["laws"]["ogden"]
+    for name in tiny.levels:
+        (tmp_path / f"{name}.yaml").write_text(yaml.safe_dump({**content, "material": name}))
+    monkeypatch.setattr("factory.materials.material_from_moduli", refused)
+    with pytest.raises(InputError, match=r"S0\.yaml: law ogden does not take the moduli of S0: bulk must be"):
+        make_plan(tiny, "ogden", tmp_path)
+
+
 def test_a_card_of_one_law_has_its_moduli_under_the_others(tmp_path: Path) -> None:
     content = yaml.safe_load((ROOT / "datasets" / "materials" / "S0.yaml").read_text())
     content["laws"] = {"neo-hookean": {"mu": 25e3, "lam": 5e6}}

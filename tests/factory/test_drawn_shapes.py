@@ -182,6 +182,31 @@ def test_recipes_without_these_keys_are_what_they_were(tmp_path: Path) -> None:
     assert over(tmp_path, 0.5).identity()["protocol"]["over_inclusion"] == 0.5
 
 
+@pytest.mark.parametrize("name", ["top", "reach", "lengths", "turned", "length_0"])
+def test_a_parameter_may_have_any_other_name(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also that of an attribute of a recipe's shapes."""
+    cube = inclusions.recipe_shapes()["cube"]
+    own = dataclasses.replace(
+        cube,
+        name="own",
+        parameters=(inclusions.RecipeParameter(name),),
+        standing=lambda p, *place: cube.standing({"side": p[name]}, *place),
+        reach=None,
+        top=None,
+    )
+    monkeypatch.setattr(inclusions, "recipe_shapes", lambda: {"own": own})
+    stated, drawn = read(
+        tmp_path,
+        {"kind": "own", "id": "a", f"{name}_mm": 9.5},
+        {"kind": "own", "id": "b", "draw": 1, f"{name}_mm": [7, 9]},
+    ).shapes
+    assert (stated.lengths_mm, stated.top_mm) == ({name: 9.5}, pytest.approx(9.5))
+    assert 7 <= drawn.lengths_mm[name] <= 9
+    assert stated.model_dump(by_alias=True)[f"{name}_mm"] == 9.5
+
+
 def test_a_parameter_with_the_name_of_a_recipes_key_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -87,8 +87,8 @@ def test_draws_stay_in_their_bounds_and_fill_them() -> None:
 def test_an_indenter_that_leaves_through_a_side_is_refused() -> None:
     """The contact points lie inside; the inclined path leaves the block."""
     paper = load_recipe("paper")
-    near = paper.model_copy(update={"protocol": paper.protocol.model_copy(update={"margin_mm": 4.0})})
-    with pytest.raises(InputError, match=r"protocol\.margin_mm: expected .* got 4: that of poke"):
+    near = paper.model_copy(update={"protocol": paper.protocol.model_copy(update={"margin_mm": 6.5})})
+    with pytest.raises(InputError, match=r"protocol\.margin_mm: expected .* got 6.5: that of poke"):
         make_plan(near, "ogden")
     upright = near.protocol.model_copy(update={"max_angle_deg": 0.0})
     assert make_plan(near.model_copy(update={"protocol": upright}), "ogden").pokes
@@ -166,8 +166,8 @@ BAD: list[tuple[str, str, str]] = [
         "key rod: edge_radius_mm: expected at most",
         "2.5",
     ),
-    (TINY.replace("margin_mm: 20", "margin_mm: 0"), "margin_mm: expected at least 3.54 mm", "45 degrees"),
-    (TINY.replace("margin_mm: 20", "margin_mm: 3.5"), "margin_mm: expected at least 3.54 mm", "got 3.5"),
+    (TINY.replace("margin_mm: 20", "margin_mm: 0"), "margin_mm: expected at least 6.36 mm", "45 degrees"),
+    (TINY.replace("margin_mm: 20", "margin_mm: 6.3"), "margin_mm: expected at least 6.36 mm", "got 6.3"),
     (
         TINY.replace(
             "kind: cube, id: cube-18, side_mm: 18", "kind: sphere, id: s, radius_mm: 9, sunk_mm: 18"

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import factory
+from factory._course import PHASES, states_at
 from factory._errors import InputError
 from tests.factory.conftest import TINY
 from tests.factory.timed_cases import FIBRES, SOFTENING, TIMED, VISCOUS, card, recipe
 from tisim import parts
+from tisim.parallel.extensions import digest_of_code
 
 
 def test_a_card_s_parts_are_those_of_the_material_under_any_law(tmp_path: Path) -> None:
@@ -113,6 +117,48 @@ def test_bad_courses_in_one_sentence(old: str, new: str, sentence: str, tmp_path
         recipe(tmp_path, TIMED.replace(old, new))
     assert sentence in str(caught.value)
     assert "protocol" in str(caught.value)
+
+
+def test_frames_just_after_a_corner_are_of_the_piece_that_begins_there(tmp_path: Path) -> None:
+    """The first frame of a hold, 1e-6 s after it begins, is in it however long another hold is."""
+    long = TIMED.replace("{hold_s: 8, frames: 3}", "{hold_s: 8, frames: 24}").replace(
+        "{hold_s: 4, frames: 2}", "{hold_s: 86400, frames: 2}"
+    )
+    assert long.count("86400") == 1
+    for poke in factory.make_plan(recipe(tmp_path, long), "ogden").pokes:
+        course = poke.scene.course
+        assert course is not None
+        assert course.frames is not None
+        times, frames = np.array(course.times), np.array(course.frames)
+        states = states_at(times, np.array(course.values), frames)
+        held = (frames > times[0]) & (frames <= times[1])
+        assert held.sum() == 24
+        assert set(states["phase"][held]) == {PHASES.index("hold")}
+        assert not states["rod_speed"][held].any()
+        assert PHASES[states["phase"][np.flatnonzero(held)[0] - 1]] == "load"
+
+
+def test_frames_that_a_course_cannot_tell_apart_are_refused_before_the_build(tmp_path: Path) -> None:
+    many = recipe(tmp_path, TIMED.replace("{hold_s: 8, frames: 3}", "{hold_s: 8, frames: 50}"))
+    with pytest.raises(InputError, match=r"poke 0: Poke\.course\.frames: expected times that rise") as caught:
+        factory.make_plan(many, "ogden")
+    assert len(str(caught.value)) < 250
+
+
+def test_a_parts_own_code_is_part_of_the_identity(tmp_path: Path) -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Own(parts.Prony):
+        name = "own"
+
+    plain = factory.make_plan(recipe(tmp_path), "ogden", card(tmp_path, VISCOUS), levels=["S1"])
+    parts.register(Own)
+    try:
+        folder = card(tmp_path, VISCOUS.replace("prony", "own"))
+        own = factory.make_plan(recipe(tmp_path), "ogden", folder, levels=["S1"])
+    finally:
+        parts.unregister("own")
+    assert "extensions" not in plain.identity
+    assert own.identity["extensions"] == {"part own": digest_of_code(Own)}
 
 
 def test_speeds_are_drawn_for_each_poke_and_common_to_the_levels(tmp_path: Path) -> None:

@@ -96,6 +96,7 @@ def test_frames_are_where_they_are_asked_for() -> None:
         (Course(frames=(2.0,)).hold(1.0), "times within the course, after 0 to 1 s"),
         (Course(frames=(0.0,)).hold(1.0), "times within the course, after 0 to 1 s"),
         (Course(frames=(0.5, 0.5)).hold(1.0), "course.frames: expected times that rise"),
+        (Course(frames=(0.5, 0.5 + 5e-13)).hold(1.0), "expected times that rise, each by more than 1e-12"),
         (Course(frames=()).hold(1.0), "at least one time, or None"),
         (Course(frames=0.5).hold(1.0), "course.frames: expected at least one time, or None, got 0.5"),  # type: ignore[arg-type]
         (Course(times=None, values=(1.0,)), "course.times: expected a sequence of numbers, got None"),  # type: ignore[arg-type]

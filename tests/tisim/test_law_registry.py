@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import tisim
-from tisim import laws
+from tisim import _extensions, laws
 
 GENT = '''
 """Gent's law (Rubber Chem. Technol. 69, 1996), isochoric plus volumetric: a law of somebody else's."""
@@ -213,5 +213,35 @@ def test_commands_know_the_laws_of_files_that_the_environment_names(tmp_path: Pa
     assert done.stdout.strip() == "{True}", done.stderr
     environment["TISIM_EXTENSIONS"] = str(tmp_path / "nowhere.py")
     done = run("-m", "tisim")
-    assert "TISIM_EXTENSIONS: " in done.stderr
-    assert "expected a Python file that exists" in done.stderr.splitlines()[-1]
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: TISIM_EXTENSIONS: ")
+    assert done.stderr.endswith("expected a Python file that exists\n")
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("names", "text", "words"),
+    [
+        (
+            ["a/own_law_1.py", "b/own_law_1.py"],
+            "x = 1\n",
+            "another module is called own_law_1: expected",
+        ),
+        (["numbers.py"], "x = 1\n", "another module is called numbers"),
+        (["own_law_2.py"], "x = 1\ny = x + z\n", "NameError: name 'z' is not defined (line 2)"),
+    ],
+)
+def test_extensions_that_would_not_be_there_are_refused(
+    names: list[str], text: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paths = [tmp_path / name for name in names]
+    for path in paths:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    monkeypatch.setenv("TISIM_EXTENSIONS", os.pathsep.join(map(str, paths)))
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+    with pytest.raises(ImportError) as caught:
+        _extensions.load()
+    sys.modules.pop("own_law_1", None)
+    assert str(caught.value).startswith(f"TISIM_EXTENSIONS: {paths[-1]}: ")
+    assert words in str(caught.value)

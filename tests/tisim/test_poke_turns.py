@@ -71,6 +71,7 @@ def test_a_sticking_surface_follows_the_rods_own_turn() -> None:
     ("changes", "sentence"),
     [
         ({"course": None, "turns": ((1.0, TILT),)}, r"Poke\.turns: expected none without a course"),
+        ({"turns": (1.0, TILT)}, r"Poke\.turns: expected pairs of a time \[s\] and a direction"),
         ({"turns": ((0.5, TILT),)}, r"Poke\.turns: expected rising times above 0 s at which a piece of the"),
         ({"turns": ((2.0, TILT), (1.0, DOWN))}, r"Poke\.turns: expected rising times above 0 s"),
         ({"turns": ((1.0, (1.0, 0.0, -0.5)),)}, r"Poke\.turns: expected a push within 45 degrees"),

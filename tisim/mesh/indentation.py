@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 # Version of the mesh, raised when the mesh of a poke changes; a dataset has one version only.
 LAYOUT = 2
 STEEPEST = np.radians(45.5)
+# Least distance of an upright rod's axis from the sides, in rod radii: the outermost fine ring and a cell.
+CLEARANCE = 1.8
 # Grids tried until one fits the inclusion well: (factor of the spacing at the inclusion, rotation of the rays
 # as a fraction of their spacing, number of additional rings).
 ATTEMPTS = (
@@ -218,8 +220,7 @@ class _Grids:
             raise MeshError(f"rod radius: expected a length above 0 [m], got {rod.radius}")
         self.half = 0.5 * np.array(size[:2])
         self.site = np.array(site, dtype=np.float64)
-        # the outermost fine ring and one more cell
-        reach = 1.8 * rod.radius / float(np.cos(tilt))
+        reach = CLEARANCE * rod.radius / float(np.cos(tilt))
         if self.site.shape != (2,) or not np.all(np.abs(self.site) + reach <= self.half):
             raise MeshError(
                 f"poke site {tuple(site)}: expected two coordinates [m] at least {1e3 * reach:.1f} mm inside "

@@ -38,6 +38,7 @@ A kind is a registered `SceneKind`. An example of a user's own kind, in a file:
 'converged'
 """
 
+from tisim.problems._checks import check_scene
 from tisim.problems._registry import (
     OnStep,
     SceneKind,
@@ -55,4 +56,4 @@ from tisim.problems.indentation.kind import KIND as INDENTATION
 for _kind in (BEAM, INDENTATION, HOMOGENEOUS, COMPRESSION):
     register_built_in(_kind)
 
-__all__ = ["OnStep", "SceneKind", "kind_of", "kinds", "register", "unregister"]
+__all__ = ["OnStep", "SceneKind", "check_scene", "kind_of", "kinds", "register", "unregister"]

@@ -107,6 +107,10 @@ def _sides(low: Array, high: Array) -> str:
 
 
 def _check_turns(scene: Poke, course: Course) -> None:
+    for turn in scene.turns:
+        if not isinstance(turn, tuple | list) or len(turn) != 2:
+            raise FieldError("turns", "pairs of a time [s] and a direction", scene.turns)
+        check_number("turns", turn[0], "pairs of a time [s] and a direction", lambda _: True)
     times = [time for time, _ in scene.turns]
     rising = all(b > a for a, b in zip([0.0, *times], times, strict=False))
     if not rising or any(course.end_at(time) is None for time in times):
