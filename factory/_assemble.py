@@ -9,7 +9,7 @@ import json
 import os
 import shutil
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from factory._course import deepest
 from factory._parts import part_entries
-from factory._record import COUNTERS
+from factory._record import COUNTERS, unit
 from factory._sampling import LEVELS, SIZE, grid_points, level_depths, profiles
 from factory._schema import (
     FIRST_DIMENSION,
@@ -94,7 +94,7 @@ def _write(plan: Plan, staging: Staging, folder: Path) -> None:
             frames = len(result["depth"])
             derived: dict[str, NDArray[Any]] = {
                 "frame_poke": np.full(frames, poke.index, dtype=np.int32),
-                "rod_axis": np.tile(_unit(poke.scene.direction), (frames, 1)),
+                "rod_axis": np.tile(unit(poke.scene.direction), (frames, 1)),
             }
             for name, stream in streams.items():
                 rows = derived[name] if name in derived else result[name]
@@ -196,11 +196,6 @@ def compressor(dtype: np.dtype[Any]) -> zarr.codecs.BloscCodec:
     )
 
 
-def _unit(direction: Iterable[float]) -> NDArray[np.float64]:
-    vector = np.array(tuple(direction))
-    return np.asarray(vector / np.linalg.norm(vector))
-
-
 def _attributes(plan: Plan, done: set[int]) -> dict[str, Any]:
     recipe = plan.recipe
     return {
@@ -279,7 +274,7 @@ def _poke_arrays(
         arrays["site_number"][i] = poke.site
         arrays["seed"][i] = poke.seed
         arrays["site"][i] = scene.site
-        arrays["direction"][i] = _unit(scene.direction)
+        arrays["direction"][i] = unit(scene.direction)
         arrays["depth_asked"][i] = deepest(scene)
         if "solved_as" in arrays:
             arrays["solved_as"][i] = poke.solved_as if poke.derived else i

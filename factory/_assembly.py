@@ -25,6 +25,7 @@ from factory._checks import FORCE_FLOOR
 from factory._cli import import_plugins
 from factory._features import own_solves
 from factory.reader import Dataset, open_dataset
+from factory.recipe import RodRecipe
 from tisim import Block, Material, Rod, laws
 from tisim.mesh import Mesh
 from tisim.mesh.indentation import poke_mesh
@@ -396,13 +397,7 @@ def _distance(points: Array, tip: Array, direction: Array, rod: Rod) -> Array:
 
 
 def _rod(data: Dataset) -> Rod:
-    rod = data.attributes["identity"]["recipe"]["rod"]
-    return Rod(
-        radius=rod["radius_mm"] * 1e-3,
-        length=rod["length_mm"] * 1e-3,
-        tip=rod["tip"],
-        edge_radius=rod["edge_radius_mm"] * 1e-3,
-    )
+    return RodRecipe.model_validate(data.attributes["identity"]["recipe"]["rod"]).rod
 
 
 def _mesh(data: Dataset, index: int) -> Mesh:

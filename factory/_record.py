@@ -94,7 +94,7 @@ def record(scene: Poke, result: Result) -> Arrays:
     nodes, triangles = surface_triangles(mesh.facet_sets["surface"])
     points = grid_points(scene.block.size)
     at_grid = interpolation(mesh.nodes, mesh.facet_sets["top"], points.reshape(-1, 3))
-    direction = _unit(scene.direction)
+    direction = unit(scene.direction)
     start = tip[0] - result.load[0] * direction if frames else first_touch(scene)
     arrays: Arrays = {
         "depth": result.load,
@@ -165,7 +165,7 @@ def check_arrays(arrays: Mapping[str, NDArray[Any]], poke: PlannedPoke) -> None:
     triangles = arrays["surface_triangle"]
     if triangles.size and not (triangles.min() >= 0 and triangles.max() < counts["nodes"]):
         raise ValueError("a surface triangle has no such node")
-    scene, direction = poke.scene, _unit(poke.scene.direction)
+    scene, direction = poke.scene, unit(poke.scene.direction)
     start, travel = arrays["path_start"], arrays["path_end"] - arrays["path_start"]
     at_top = start + (scene.block.size[2] - start[2]) / direction[2] * direction
     away = max(
@@ -176,13 +176,14 @@ def check_arrays(arrays: Mapping[str, NDArray[Any]], poke: PlannedPoke) -> None:
         raise ValueError("is the result of another scene: its path is not the planned one")
 
 
-def _unit(direction: tuple[float, float, float]) -> NDArray[np.float64]:
+def unit(direction: tuple[float, float, float]) -> NDArray[np.float64]:
+    """The direction as a unit vector (3,)."""
     return np.asarray(direction) / np.linalg.norm(direction)
 
 
 def first_touch(scene: Poke) -> NDArray[np.float64]:
     """Centre of the indenter's tip [m] where the indenter first touches the undeformed top."""
-    direction = _unit(scene.direction)
+    direction = unit(scene.direction)
     cosine, sine = -float(direction[2]), math.hypot(float(direction[0]), float(direction[1]))
     rod = scene.rod
     round_part = rod.radius if rod.tip == "hemisphere" else rod.edge_radius

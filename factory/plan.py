@@ -30,7 +30,7 @@ from factory.materials import (
     material_of,
 )
 from factory.recipe import Recipe
-from tisim import Block, Inclusion, Material, Poke, Rod, parts
+from tisim import Block, Inclusion, Material, Poke, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
@@ -410,12 +410,7 @@ def _scene(
         site=(x, y),
         direction=(sine * math.cos(heading), sine * math.sin(heading), -math.cos(angle)),
         block=Block(size=_size(recipe, number), inclusion=inclusion),
-        rod=Rod(
-            radius=recipe.rod.radius_mm * _MM,
-            length=recipe.rod.length_mm * _MM,
-            tip=recipe.rod.tip,
-            edge_radius=recipe.rod.edge_radius_mm * _MM,
-        ),
+        rod=recipe.rod.rod,
         friction=recipe.friction,
         refinement=recipe.refinement,
         **driven,

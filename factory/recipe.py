@@ -32,10 +32,13 @@ from factory._shapes import (
     of_its_kind,
     with_drawn_shapes,
 )
+from tisim import Rod
 from tisim.mesh.indentation import CLEARANCE
 
 # As experiments name materials, since `calibration.fit` names a card after its material.
 Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
+
+_MM = 1e-3
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
 
@@ -55,6 +58,13 @@ class RodRecipe(Strict):
     length_mm: Positive
     tip: Literal["flat", "hemisphere"] = "flat"
     edge_radius_mm: Positive = 1.0
+
+    @property
+    def rod(self) -> Rod:
+        """The indenter [m]."""
+        lengths = (self.radius_mm, self.length_mm, self.edge_radius_mm)
+        radius, length, edge = (value * _MM for value in lengths)
+        return Rod(radius=radius, length=length, tip=self.tip, edge_radius=edge)
 
     @model_validator(mode="after")
     def _rounded(self) -> Self:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tisim import laws
 from tisim.bodies import Vector
 from tisim.io.export import checked_path
-from tisim.mesh import Mesh, boundary_facets, unfold
+from tisim.mesh import FACET_OUTLINE, Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
 from tisim.problems.indentation.rod import rod_surface
 from tisim.problems.indentation.turning import axis_at
@@ -22,7 +22,6 @@ from tisim.scene import Poke
 Array = NDArray[np.float64]
 
 # Node order of facets as polygons, with middle nodes between the corners.
-_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 _COLOURS = "viridis"
 _STEEL = np.array([0.62, 0.65, 0.70])
 _EDGE = 0.82  # brightness of an element's edges relative to its face
@@ -188,8 +187,8 @@ class Sheet:
 
 def shaded(polygons: Array, colours: Array, camera: Camera, *, edges: bool) -> Sheet:
     """The polygons that face the viewer, lit from above the viewer's left shoulder."""
-    if polygons.shape[1] in _OUTLINE:
-        polygons = polygons[:, _OUTLINE[polygons.shape[1]]]
+    if polygons.shape[1] in FACET_OUTLINE:
+        polygons = polygons[:, FACET_OUTLINE[polygons.shape[1]]]
     normals = _normals(polygons)
     front = normals @ camera.towards > 0
     light = camera.towards + 0.9 * camera.up - 0.5 * camera.right

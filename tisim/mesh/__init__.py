@@ -3,6 +3,7 @@
 from tisim.mesh._mesh import (
     ELEMENT_FACETS,
     FACET_KIND,
+    FACET_OUTLINE,
     NODES_PER_ELEMENT,
     NODES_PER_FACET,
     ElementKind,
@@ -26,6 +27,7 @@ from tisim.mesh.tetrahedralise import body_from_surface
 __all__ = [
     "ELEMENT_FACETS",
     "FACET_KIND",
+    "FACET_OUTLINE",
     "NODES_PER_ELEMENT",
     "NODES_PER_FACET",
     "PAPER_LAYER",

@@ -20,6 +20,8 @@ FACET_KIND: Mapping[ElementKind, FacetKind] = MappingProxyType(
     {"tet4": "tri3", "tet10": "tri6", "hex8": "quad4", "hex20": "quad8"}
 )
 NODES_PER_FACET: Mapping[FacetKind, int] = MappingProxyType({"tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8})
+# Nodes in the order in which they lie along a facet's outline, by their number.
+FACET_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 
 # Facets of each element by local node, counter-clockwise seen from outside.
 # tet10 edges: 4=(0,1) 5=(1,2) 6=(2,0) 7=(0,3) 8=(1,3) 9=(2,3) (the order of VTK_QUADRATIC_TETRA).

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.io.export import checked_path
+from tisim.mesh import FACET_OUTLINE
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -18,8 +19,6 @@ Colour = tuple[float, float, float, float]
 
 STEEL: Colour = (0.55, 0.58, 0.63, 1.0)
 REST: Colour = (0.55, 0.60, 0.66, 0.28)
-
-_OUTLINE = {3: (0, 1, 2), 4: (0, 1, 2, 3), 6: (0, 3, 1, 4, 2, 5), 8: (0, 4, 1, 5, 2, 6, 3, 7)}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -189,6 +188,6 @@ class View:
 
 def outlines(facets: Ints) -> Ints:
     """Distinct edges of facets as lines (e, 2), with the halves of edges that have a middle node."""
-    ring = facets[:, _OUTLINE[facets.shape[1]]]
+    ring = facets[:, FACET_OUTLINE[facets.shape[1]]]
     lines = np.sort(np.stack([ring, np.roll(ring, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     return np.unique(lines[lines[:, 0] != lines[:, 1]], axis=0).astype(np.int32)
