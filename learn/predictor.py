@@ -346,22 +346,11 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
     if not folders:
         raise InputError("expected the folder of a run, got none")
     runs = [load_run(folder) for folder in folders]
-    for other in runs[1:]:
-        if other.uuid != runs[0].uuid:
-            raise InputError(
-                f"{other.folder}: trained on dataset {other.uuid}, {runs[0].folder} on {runs[0].uuid}"
-            )
-    store = open_store(dataset or runs[0].location, verify=False)
+    joined = join_runs(runs) if len(runs) > 1 else runs[0]
+    store = open_store(dataset or joined.location, verify=False)
     if len(runs) == 1:
-        return Predictor(runs[0], store)
-    parts = [split_of_run(store, one).train for one in runs]
-    for other, part in zip(runs[1:], parts[1:], strict=True):
-        if not np.array_equal(part, parts[0]):
-            raise InputError(
-                f"{other.folder}: expected runs that differ in seed alone, this one was trained on other"
-                f" pokes than {runs[0].folder}"
-            )
+        return Predictor(joined, store)
     domains = [known_domain(one, store) for one in runs]
     known = [domain for domain in domains if domain is not None]
-    joined = replace(join_runs(runs), domain=Domain.common(known) if len(known) == len(runs) else None)
-    return Predictor(joined, store)
+    common = Domain.common(known) if len(known) == len(runs) else None
+    return Predictor(replace(joined, domain=common), store)
