@@ -278,6 +278,7 @@ def join_runs(runs: list[Run]) -> Run:
     return replace(
         runs[0],
         model=Ensemble([run.model for run in runs]).eval(),
+        weights=tuple(digest for run in runs for digest in run.weights),
         members=tuple(run.folder for run in runs),
     )
 

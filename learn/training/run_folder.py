@@ -8,6 +8,7 @@ validation part. Both carry the dataset's uuid, the recipe, the statistics and t
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import importlib
 import io
 import json
@@ -45,6 +46,8 @@ class Run:
         before they were recorded.
     epoch : the epoch that was kept, counted from 1.
     model : the model in evaluation mode, on the CPU.
+    weights : sha256 of the file that the model was read from, or of each member's: the folder may hold others
+        by now, if the run is still trained.
     domain : domain of validity; None for runs trained before it was recorded (see
         `learn.validity.domain_of`).
     members : folders of the runs that were joined to this one as an ensemble; empty for one run.
@@ -60,6 +63,7 @@ class Run:
     seen: frozenset[str]
     epoch: int
     model: Model
+    weights: tuple[str, ...]
     domain: Domain | None = None
     members: tuple[Path, ...] = ()
 
@@ -138,10 +142,18 @@ def write_whole(path: Path, data: bytes) -> None:
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
     """A checkpoint's content; InputError if it is missing, damaged or of another format."""
+    return _content_of(_bytes_of(path), path)
+
+
+def _bytes_of(path: Path) -> bytes:
     if not path.is_file():
         raise InputError(f"{path}: no such checkpoint")
+    return path.read_bytes()
+
+
+def _content_of(data: bytes, path: Path) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        content: dict[str, Any] = torch.load(io.BytesIO(data), map_location="cpu", weights_only=True)
     except Exception as error:  # unpickling breaks in many ways
         text = " ".join(str(error).split())[:120]
         raise InputError(f"{path}: not a readable checkpoint ({text})") from None
@@ -188,7 +200,8 @@ def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, nam
 def load_run(folder: Path | str) -> Run:
     """Load the best model of a run's folder. InputError if there is none, or it is damaged."""
     path = Path(folder) / BEST
-    content = load_checkpoint(path)
+    data = _bytes_of(path)
+    content = _content_of(data, path)
     recipe = recipe_of(content, path)
     statistics = Statistics(**content["statistics"])
     model = make_model(recipe.model, statistics)
@@ -206,6 +219,7 @@ def load_run(folder: Path | str) -> Run:
         seen=frozenset(content.get("seen", ())),
         epoch=content["epoch"],
         model=model,
+        weights=(hashlib.sha256(data).hexdigest(),),
         domain=None if domain is None else Domain.from_dict(domain, str(path)),
     )
 

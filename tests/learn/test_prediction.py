@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -262,7 +263,11 @@ def test_an_ensemble_is_of_runs_that_differ_in_seed_alone(run: Path, tmp_path: P
         (tmp_path / key).mkdir()
         changed = {**content, "recipe": {**content["recipe"], key: value}}
         save_checkpoint(tmp_path / key / "best.pt", changed)
-    assert len(learn.load([run, tmp_path / "seed"]).run.members) == 2
+    joined = learn.load([run, tmp_path / "seed"]).run
+    assert joined.members == (run, tmp_path / "seed")
+    sums = [hashlib.sha256((folder / "best.pt").read_bytes()).hexdigest() for folder in joined.members]
+    (tmp_path / "seed" / "best.pt").unlink()  # what a run that is still trained replaces
+    assert joined.weights == tuple(sums)
     for key, value in {"fold": 1, "batch": 7}.items():
         words = f"{key}: expected runs that differ in seed alone, this one has {key} {value}"
         with pytest.raises(InputError, match=words):
