@@ -164,6 +164,12 @@ def test_a_damaged_chunk_is_named_even_without_the_manifest(copy: Path) -> None:
         store.displacement(slice(40, 48))
 
 
+def test_a_lost_profile_is_no_homogeneous_tissue(copy: Path) -> None:
+    next(path for path in (copy / "profile" / "c").rglob("*") if path.is_file()).unlink()
+    with pytest.raises(InputError, match=r"profile/c/.* is missing, the store is incomplete"):
+        open_store(copy, verify=False)
+
+
 def test_folds_by_shape_never_share_a_shape(tmp_path: Path) -> None:
     store = open_store(write_store(tmp_path / "s.zarr", shapes=11, sites=1, frames=1))
     tested = []
