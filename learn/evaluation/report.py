@@ -200,9 +200,20 @@ def no_intervals(found: Evaluation) -> list[str]:
     return [f"{name}: {reason}." for name, reason in found.no_intervals.items()]
 
 
+def _spread(found: Evaluation) -> str:
+    """Sentence on what the models' standard deviations are over: runs, or frames where there is one run."""
+    several = [name for name in found.models if len(found.folds[name]) > 1]
+    one = [name for name in found.models if name not in several]
+    if not several or not one:
+        return f"± is the standard deviation over {'runs' if several else 'frames, as in the paper'}."
+    return (
+        f"± is the standard deviation over runs for {', '.join(several)}; over frames, as in the paper, for "
+        f"{', '.join(one)}."
+    )
+
+
 def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
     """All tables by title, each with its notes."""
-    spread = "runs" if len(found.runs) > 1 else "frames, as in the paper"
     size = f"{counted(found.pokes, 'test poke')}, {counted(found.frames, 'frame')}"
     everything = {name: levels["all"] for name, levels in found.tables.items()}
     result: dict[str, tuple[Table, list[str]]] = {
@@ -210,8 +221,8 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
         "The paper's table": (
             paper_table(found),
             [
-                f"{size}. ± is the standard deviation over {spread}. The paper's data are others (1,320 "
-                "pokes, about 14 to 16 mm deep): its rows are for orientation."
+                f"{size}. {_spread(found)} The paper's data are others (1,320 pokes, about 14 to 16 mm "
+                "deep): its rows are for orientation."
             ],
         ),
         "Symmetry": (
@@ -239,7 +250,8 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
         result["Other clouds"] = full_table(found.clouds, "points"), [note]
     if found.depths:
         rows = {name: over_folds(folds) for name, folds in found.depths.items()}
-        note = "Test frames by depth" + (", means over folds." if len(found.runs) > 1 else ".")
+        several = any(len(folds) > 1 for folds in found.depths.values())
+        note = "Test frames by depth" + (", means over the runs of a model." if several else ".")
         result["By depth"] = full_table(rows, "model, depth"), [note]
     if found.outside:
         note = (

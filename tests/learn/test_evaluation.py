@@ -22,6 +22,7 @@ from learn.data.clouds import scattered
 from learn.errors import InputError
 from learn.evaluation import ensembles, evaluate, join_runs, parts_of, summarise
 from learn.evaluation.predictions import interpolation_error_mm, predict_on
+from learn.evaluation.report import tables
 from learn.metrics import METRICS
 from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_on
 from learn.scene_file import load_poke, scene_and_poke
@@ -112,6 +113,14 @@ def test_runs_that_differ_in_more_than_the_fold_have_rows_of_their_own(store: Pa
     apart = evaluate([loaded, other], data, baselines=False, clouds=False)
     name = loaded.recipe.name
     assert apart.models == [f"invariant-gnn ({name} 1)", f"invariant-gnn ({name} 2)"]
+    mixed = replace(both, models=[*both.models, "b"], folds={**both.folds, "b": alone.folds["invariant-gnn"]})
+    for found, words in (
+        (alone, "over frames, as in the paper."),
+        (apart, "over frames, as in the paper."),
+        (both, "over runs."),
+        (mixed, "over runs for invariant-gnn; over frames, as in the paper, for b."),
+    ):
+        assert f"± is the standard deviation {words}" in tables(found)["The paper's table"][1][0]
 
 
 def _changed(run: Run, **recipe: object) -> Run:
