@@ -23,21 +23,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from learn.data import Store, open_store, split_of_run
+from learn.data import Store, open_store
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
-from learn.training import Run, load_run
-from learn.validity import (
-    Check,
-    Domain,
-    domain_of,
-    poke_values,
-    unknown_checks,
-)
+from learn.training import Run, known_domain, load_run
+from learn.validity import Check, Domain, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
 
@@ -320,13 +314,6 @@ class Predictor:
 
 def _first_lower(text: str) -> str:
     return text[:1].lower() + text[1:].rstrip(".")
-
-
-def known_domain(run: Run, store: Store) -> Domain | None:
-    """The domain recorded with a run, or derived from its dataset; None if neither is available."""
-    if run.domain is not None:
-        return run.domain
-    return domain_of(store, split_of_run(store, run).train) if run.uuid == store.uuid else None
 
 
 def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:

@@ -40,7 +40,7 @@ from learn.evaluation.summary import Outside, Row, by_depth, by_distance, by_sof
 from learn.metrics import Predictions
 from learn.models import Ensemble, Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
-from learn.training import Recipe, Run
+from learn.training import Recipe, Run, known_domain
 from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
@@ -316,9 +316,10 @@ def _part(recipe: Recipe) -> str:
 
 def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
     """Distance of frames from the run's trained ranges (f,); 0 if these are not known."""
-    if run.domain is None:
+    domain = known_domain(run, store)
+    if domain is None:
         return np.zeros(len(predictions.depth))
-    return frame_distances(run.domain, store, predictions.poke, predictions.depth, predictions.clock)
+    return frame_distances(domain, store, predictions.poke, predictions.depth, predictions.clock)
 
 
 def _covered(intervals: Intervals, one: Predicted) -> Covered:

@@ -21,12 +21,13 @@ import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import first_fault
+from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
 from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import MODELS, Model, make_model
 from learn.training.recipe import Recipe, check_recipe
-from learn.validity import Domain
+from learn.validity import Domain, domain_of
 
 FORMAT = 1
 LAST, BEST, LOG = "last.pt", "best.pt", "log.jsonl"
@@ -48,8 +49,7 @@ class Run:
     model : the model in evaluation mode, on the CPU.
     weights : sha256 of the file that the model was read from, or of each member's: the folder may hold others
         by now, if the run is still trained.
-    domain : domain of validity; None for runs trained before it was recorded (see
-        `learn.validity.domain_of`).
+    domain : domain of validity; None for runs trained before it was recorded (see `known_domain`).
     members : folders of the runs that were joined to this one as an ensemble; empty for one run.
     """
 
@@ -222,6 +222,13 @@ def load_run(folder: Path | str) -> Run:
         weights=(hashlib.sha256(data).hexdigest(),),
         domain=None if domain is None else Domain.from_dict(domain, str(path)),
     )
+
+
+def known_domain(run: Run, store: Store) -> Domain | None:
+    """The domain recorded with a run, or derived from its dataset; None if the store is another."""
+    if run.domain is not None or run.uuid != store.uuid:
+        return run.domain
+    return domain_of(store, split_of_run(store, run).train)
 
 
 class Log:
