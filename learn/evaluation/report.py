@@ -18,6 +18,7 @@ from learn.evaluation.pictures import draw_forces, draw_learning, draw_poke, enc
 from learn.evaluation.summary import Row, Value, over_folds
 from learn.metrics import METRICS, RING_EDGES_MM
 from learn.training import read_log
+from learn.training.run_folder import write_whole
 
 PAPER_METRICS = ("force", "mean", "max", "tip")
 _FEW_POKES = 10
@@ -266,9 +267,10 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
 
 
 def write_report(found: Evaluation, folder: Path) -> None:
-    """Write FOLDER/report.html, tables.json and the pictures (learning, best, median, worst, force .png)."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "tables.json").write_text(json.dumps(as_json(found), indent=1) + "\n", encoding="utf-8")
+    """Write FOLDER/report.html, tables.json and the pictures (learning, best, median, worst, force .png).
+
+    All are made before the first is written, so that a fault leaves an earlier report as it was.
+    """
     store, first = found.store, found.runs[0]
     assert found.predictions is not None
     titles = {"only": "the only test poke"}
@@ -279,9 +281,6 @@ def write_report(found: Evaluation, folder: Path) -> None:
     pictures["force"] = encoded(draw_forces(found.predictions))
     logs = {run.folder.name: lines for run in found.runs if (lines := read_log(run.folder))}
     learning = encoded(draw_learning(logs)) if logs else ""
-    for name, picture in {"learning": learning, **pictures}.items():
-        if picture:
-            (folder / f"{name}.png").write_bytes(base64.b64decode(picture))
     about = [
         ("runs", ", ".join(str(run.folder.name) for run in found.runs)),
         ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes, uuid {store.uuid}"),
@@ -308,7 +307,16 @@ def write_report(found: Evaluation, folder: Path) -> None:
         metrics=METRICS.values(),
         pictures=pictures.items(),
     )
-    (folder / "report.html").write_text(html, encoding="utf-8")
+    files = {
+        f"{name}.png": base64.b64decode(picture)
+        for name, picture in {"learning": learning, **pictures}.items()
+        if picture
+    }
+    files["tables.json"] = (json.dumps(as_json(found), indent=1) + "\n").encode()
+    files["report.html"] = html.encode()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        write_whole(folder / name, content)
 
 
 def as_json(found: Evaluation) -> dict[str, Any]:
