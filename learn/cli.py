@@ -111,7 +111,12 @@ def train(
             good = "the last good checkpoint stands" if (folder / "last.pt").exists() else "nothing was kept"
             fail(f"diverged: {error}; {good} in {folder}", 1)
         except KeyboardInterrupt:
-            fail(f"Stopped; the same command with --resume goes on ({folder}).", 130)
+            next_step = (
+                "the same command with --resume goes on"
+                if (folder / "last.pt").exists()
+                else "no epoch was finished: the same command begins again"
+            )
+            fail(f"Stopped; {next_step} ({folder}).", 130)
         except OSError as error:
             good = (
                 "the last good checkpoint stands: the same command with --resume goes on"

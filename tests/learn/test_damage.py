@@ -19,6 +19,7 @@ import learn.export
 import learn.onnx_bundle
 import learn.predict
 import learn.train
+import learn.training
 from learn.data import open_store
 from learn.errors import InputError
 from learn.evaluation import Evaluation
@@ -273,6 +274,24 @@ def test_a_link_out_of_the_store_is_not_followed(store: Path, tmp_path: Path) ->
     (copy / "depth" / "c").symlink_to(tmp_path / "elsewhere")
     with pytest.raises(InputError, match="a link that leads out of the store"):
         open_store(copy)
+
+
+def test_stopped_before_the_first_checkpoint_there_is_nothing_to_resume(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(learn.training, "Trainer", stop)
+    (tmp_path / "r.yaml").write_text("model: invariant-gnn-small\n")
+    command = (store, "--recipe", tmp_path / "r.yaml", "--threads", 1, "--out", tmp_path / "run")
+    stopped = call(learn.train.app, *command)
+    assert stopped.exit_code == 130
+    sentence = f"Stopped; no epoch was finished: the same command begins again ({tmp_path / 'run'}).\n"
+    assert stopped.stderr == sentence
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "last.pt").touch()
+    assert "Stopped; the same command with --resume goes on" in call(learn.train.app, *command).stderr
 
 
 RESUMED = Recipe(name="tiny", epochs=3, batch=8, model="invariant-gnn-small")
