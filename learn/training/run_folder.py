@@ -8,6 +8,7 @@ validation part. Both carry the dataset's uuid, the recipe, the statistics and t
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import importlib
 import io
@@ -126,7 +127,9 @@ def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file atomically: it holds these bytes, or its earlier content."""
+    """Write a file atomically: it holds these bytes, or its earlier content. OSError if it cannot be."""
+    if path.is_dir():  # "." has no name to derive another from
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     beside = path.with_suffix(".part")
     try:
         with beside.open("wb") as file:
