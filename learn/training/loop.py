@@ -144,9 +144,10 @@ class Trainer:
                     self._check(line)
                 self.epoch += 1
                 if self.group.is_main and log is not None:
-                    self._save(line)
                     line |= {"seconds": seconds, "samples_per_second": len(self.split.train) / seconds}
+                    # first the log: of an epoch that is not in last.pt, resuming drops its line
                     log.add(line)
+                    self._save(line)
                 self.group.wait()
                 self._report(0, line)
         finally:

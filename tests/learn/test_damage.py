@@ -333,7 +333,9 @@ def test_a_disk_that_fills_up_later_is_resumed_to_the_same_weights(
     assert load_checkpoint(tmp_path / "parts" / "last.pt")["epoch"] == 1
     assert not (tmp_path / "parts" / "last.part").exists()
     load_run(tmp_path / "parts")
+    assert [line["epoch"] for line in read_log(tmp_path / "parts")] == [0, 1]
     Trainer(open_store(store), RESUMED, tmp_path / "parts", resume=True).train()
+    assert [line["epoch"] for line in read_log(tmp_path / "parts")] == [0, 1, 2]
     one, other = (load_checkpoint(tmp_path / name / "last.pt")["model"] for name in ("whole", "parts"))
     assert all(torch.equal(one[key], other[key]) for key in one)
 
