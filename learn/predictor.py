@@ -30,7 +30,7 @@ from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
-from learn.training import Run, known_domain, load_run
+from learn.training import Run, check_dataset, known_domain, load_run
 from learn.validity import Check, Domain, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
@@ -166,10 +166,7 @@ class Predictor:
     """
 
     def __init__(self, run: Run, store: Store) -> None:
-        if run.uuid != store.uuid:
-            raise InputError(
-                f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
-            )
+        check_dataset(run.uuid, run.folder, store)
         self.run, self.store = run, store
         self.domain = known_domain(run, store)
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from learn._yaml import first_fault
+from learn._yaml import Finite, first_fault
 from learn.errors import InputError
 from learn.evaluation.intervals import N_FEATURES, Intervals
 from learn.metrics import RING_EDGES_MM
@@ -91,7 +91,6 @@ def _read(path: Path, run: Run) -> Intervals:
     return Intervals(**content)
 
 
-_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 _Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 
 
@@ -102,14 +101,14 @@ class _File(BaseModel):
     level: _Positive
     promised: _Positive
     pokes: Annotated[int, Field(strict=True, ge=1)]
-    scale: Annotated[list[_Number], Field(min_length=N_FEATURES, max_length=N_FEATURES)]
+    scale: Annotated[list[Finite], Field(min_length=N_FEATURES, max_length=N_FEATURES)]
     factors: Annotated[
         list[_Positive], Field(min_length=len(RING_EDGES_MM) - 1, max_length=len(RING_EDGES_MM) - 1)
     ]
     force_scale: _Positive
     force: _Positive
-    interior: tuple[_Number, _Number] = (0.0, 0.0)  # files from before 2026-11-25 have neither
-    force_interior: tuple[_Number, _Number] = (0.0, 0.0)
+    interior: tuple[Finite, Finite] = (0.0, 0.0)  # files from before 2026-11-25 have neither
+    force_interior: tuple[Finite, Finite] = (0.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod

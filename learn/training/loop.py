@@ -375,7 +375,7 @@ class Trainer:
                 )
             return None
         content = load_checkpoint(path)
-        check_dataset(content, path, self.store)
+        check_dataset(content["uuid"], path, self.store)
         before, now = recipe_of(content, path).model_dump(), self.recipe.model_dump()
         seen = content.get("seen", self.seen)
         frames = content["statistics"]["frames"], len(self.split.train)

@@ -21,7 +21,7 @@ from typing import Annotated, Any
 import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from learn._yaml import first_fault
+from learn._yaml import Finite, first_fault
 from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
 from learn.data.store import Store
@@ -69,22 +69,19 @@ class Run:
     members: tuple[Path, ...] = ()
 
 
-_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-
-
 class _Statistics(BaseModel):
     model_config = ConfigDict(extra="forbid")
     frames: Annotated[int, Field(ge=1)]
-    displacement: _Number
-    depth_mean: _Number
-    depth_max: _Number
-    log_force_mean: _Number
-    log_force_sd: _Number
-    force_rms: _Number
-    log_modulus_mean: _Number | None = None
-    block_height: Annotated[_Number, Field(gt=0)] | None = None
-    log_time_mean: _Number | None = None
-    log_speed_mean: _Number | None = None
+    displacement: Finite
+    depth_mean: Finite
+    depth_max: Finite
+    log_force_mean: Finite
+    log_force_sd: Finite
+    force_rms: Finite
+    log_modulus_mean: Finite | None = None
+    block_height: Annotated[Finite, Field(gt=0)] | None = None
+    log_time_mean: Finite | None = None
+    log_speed_mean: Finite | None = None
 
 
 class _Content(BaseModel):
@@ -170,12 +167,10 @@ def _content_of(data: bytes, path: Path) -> dict[str, Any]:
     return content
 
 
-def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
-    """Raise InputError if a checkpoint was trained on another dataset."""
-    if content["uuid"] != store.uuid:
-        raise InputError(
-            f"{path}: trained on dataset {content['uuid']}, but {store.location} is {store.uuid}"
-        )
+def check_dataset(uuid: str, where: Path, store: Store, *, hint: str = "") -> None:
+    """Raise InputError if the checkpoint or run at `where` was trained on another dataset."""
+    if uuid != store.uuid:
+        raise InputError(f"{where}: trained on dataset {uuid}, but {store.location} is {store.uuid}{hint}")
 
 
 def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
