@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import yaml
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from learn.errors import InputError
 
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]  # a number: no text, no true, no NaN
 _BYTES, _EVENTS, _DEPTH = 1_000_000, 20_000, 30
 
 

@@ -15,7 +15,7 @@ from learn.data import Batch, MemoryDataset, Store, StreamDataset, make_batch
 from learn.data.loaders import epoch_order
 from learn.models import InvariantGnn, Model, Pokes, Response, Scene, Scenes, pokes_of
 from learn.models.single_poke import SinglePoke
-from learn.onnx_bundle import OnnxBundle
+from learn.onnx_bundle import OnnxBundle, bundle_in
 from learn.predictor import Predictor
 from learn.real_time import RealTime
 from learn.training import Run
@@ -72,7 +72,12 @@ def loader_rates(
 
 @torch.inference_mode()
 def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
-    """Latency of one poke: name, threads, median and best [ms]; the interior is already encoded."""
+    """Latency of one poke: name, threads, median and best [ms]; the interior is already encoded.
+
+    InputError if the run has an incomplete export.
+    """
+    exported = run.folder / "onnx"
+    has_export = isinstance(run.model, InvariantGnn) and bundle_in(exported)
     times: list[tuple[str, str, float, float]] = []
     setup = store.setup_index[store.geometry[store.frame_poke]]
     rows = np.flatnonzero(setup == setup[0])[:BATCH]
@@ -104,8 +109,8 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
         middle, best = timed(lambda: model.decode(encoded, many), max(3, repeats // 10))
         each = f"{name}, {len(rows)} at once, each"
         times.append((each, str(threads), middle / len(rows), best / len(rows)))
-        if (run.folder / "onnx" / "encoder.onnx").is_file():
-            onnx = OnnxBundle(run.folder / "onnx", threads=threads)
+        if has_export:
+            onnx = OnnxBundle(exported, threads=threads)
             code = onnx.encode(scene.rigid[scene.rigid_index[one.geometry[0]]])
             middle, best = timed(lambda onnx=onnx, code=code: onnx.poke(code, one, 0), repeats)  # type: ignore[misc]
             times.append((f"{name}, onnxruntime", str(threads), middle, best))

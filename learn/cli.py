@@ -16,7 +16,6 @@ import typer
 from learn._options import Dataset, Device, Plugins, Runs, Threads, Version, load_plugins, set_threads
 from learn._terminal import fail, log_to, make_console, plain_errors, print_table, terminable
 from learn._training_screen import TrainingScreen
-from learn.errors import InputError
 
 app = typer.Typer(
     name="learn",
@@ -111,7 +110,12 @@ def train(
             good = "the last good checkpoint stands" if (folder / "last.pt").exists() else "nothing was kept"
             fail(f"diverged: {error}; {good} in {folder}", 1)
         except KeyboardInterrupt:
-            fail(f"Stopped; the same command with --resume goes on ({folder}).", 130)
+            next_step = (
+                "the same command with --resume goes on"
+                if (folder / "last.pt").exists()
+                else "no epoch was finished: the same command begins again"
+            )
+            fail(f"Stopped; {next_step} ({folder}).", 130)
         except OSError as error:
             good = (
                 "the last good checkpoint stands: the same command with --resume goes on"
@@ -180,7 +184,7 @@ def evaluate(
         from learn.evaluation import evaluate as evaluate_runs
         from learn.evaluation import replaced_text, save_intervals
         from learn.evaluation.report import tables, verdict, write_report
-        from learn.training import load_run, make_device
+        from learn.training import check_dataset, load_run, make_device
 
         load_plugins(plugin or [])
         set_threads(threads)
@@ -188,12 +192,8 @@ def evaluate(
         chosen = make_device(device)
         loaded = [load_run(folder) for folder in runs]
         store = open_store(dataset or loaded[0].location)
-        for run in loaded:
-            if run.uuid != store.uuid and not transfer:
-                raise InputError(
-                    f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid} "
-                    "(--transfer allows it)"
-                )
+        for run in loaded if not transfer else ():
+            check_dataset(run.uuid, run.folder, store, hint=" (--transfer allows it)")
         found = evaluate_runs(
             loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble, device=chosen
         )
@@ -360,16 +360,13 @@ def bench(
     with plain_errors():
         from learn.benchmark import BATCH, latencies, loader_rates, yardstick
         from learn.data import open_store
-        from learn.training import load_run
+        from learn.training import check_dataset, load_run
 
         load_plugins(plugin or [])
         loaded = [load_run(run) for run in runs]
         store = open_store(dataset or loaded[0].location, verify=False)
         for run in loaded:
-            if run.uuid != store.uuid:
-                raise InputError(
-                    f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
-                )
+            check_dataset(run.uuid, run.folder, store)
         rows = [row for run in loaded for row in latencies(run, store, repeats)]
         print_table(
             console,

@@ -18,6 +18,7 @@ import copy
 import importlib
 import json
 import logging
+import tempfile
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +36,7 @@ from learn.models._encoder import Encoded, Stencil, gathered
 from learn.training import Run
 from learn.validity import Domain
 
+FILES = ("encoder.onnx", "poke.onnx", "model.json")  # of invariant-gnn
 TOLERANCE = 1e-5  # relative to the largest displacement of a poke, and to its force
 _CHECKED = 8  # pokes
 CLOCK = ["time_s", "rod_speed_m_per_s", "approach_speed_m_per_s"]  # in this order
@@ -84,23 +86,21 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
 
     InputError if a package is missing, or the model has no export.
     """
-    need_packages()
-    if not isinstance(run.model, Cegnn | InvariantGnn):
-        raise InputError(f"{run.folder}: model {run.recipe.model} has no ONNX export")
+    model = _exportable(run)
     folder.mkdir(parents=True, exist_ok=True)
-    if isinstance(run.model, Cegnn):
+    if isinstance(model, Cegnn):
         files = {"poke": folder / "poke.onnx"}
-        part = CegnnPart(_in_double(run.model), scene)
+        part = CegnnPart(_in_double(model), scene)
         write_graph(part, _example(scene), files["poke"], INPUTS, ["displacement", "force"])
         return files
-    sparse = run.model.prepare(scene)
+    sparse = model.prepare(scene)
     stencils = tuple(gathered(s) for s in sparse)
     one = replace(scene, rigid=scene.rigid[:1], rigid_index=torch.zeros(1, dtype=torch.int64))
     with torch.no_grad():
-        encoded = run.model.encode(one, stencils)
+        encoded = model.encode(one, stencils)
     files = {"encoder": folder / "encoder.onnx", "poke": folder / "poke.onnx"}
     write_graph(
-        EncoderPart(run.model, one, stencils), (one.rigid[0],), files["encoder"],
+        EncoderPart(model, one, stencils), (one.rigid[0],), files["encoder"],
         ["rigid"], ["code", "vectors", "clear"],
     )  # fmt: skip
     vector = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
@@ -108,13 +108,21 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     start = scene.points.mean(dim=0)
     names = ["code", "vectors", "clear", *ROD]
     inputs = [encoded.code, encoded.vectors, encoded.clear, start, vector, scalar, scalar * 2e6]
-    if run.model.takes_clock:
+    if model.takes_clock:
         names.append("clock")
         inputs.append(torch.tensor([1.0, 2e-3, 2e-3], dtype=torch.float64))
     write_graph(
-        PokePart(run.model, one, stencils), tuple(inputs), files["poke"], names, ["displacement", "force"]
+        PokePart(model, one, stencils), tuple(inputs), files["poke"], names, ["displacement", "force"]
     )
     return files
+
+
+def _exportable(run: Run) -> Cegnn | InvariantGnn:
+    """The run's model; InputError if it has no export, or a package is missing."""
+    need_packages()
+    if not isinstance(run.model, Cegnn | InvariantGnn):
+        raise InputError(f"{run.folder}: model {run.recipe.model} has no ONNX export")
+    return run.model
 
 
 def write_graph(
@@ -179,7 +187,21 @@ def _session(path: Path, *, threads: int = 1) -> Any:
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1
     options.log_severity_level = 3
-    return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    try:
+        return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # onnxruntime raises kinds of its own
+        text = " ".join(str(error).split())[:120]
+        raise InputError(f"{path}: not a readable ONNX file ({text}): learn.export writes it again") from None
+
+
+def bundle_in(folder: Path) -> bool:
+    """True if a folder has all files of an export of invariant-gnn, False if it has none; else InputError."""
+    missing = [name for name in FILES if not (folder / name).is_file()]
+    if missing and len(missing) < len(FILES):
+        raise InputError(
+            f"{folder}: expected {', '.join(FILES)}, {missing[0]} is missing: learn.export writes them again"
+        )
+    return not missing
 
 
 class OnnxBundle:
@@ -223,7 +245,7 @@ def largest_difference(folder: Path, run: Run, scene: Scene, pokes: Pokes) -> fl
 def write_bundle(
     run: Run, store: Store, folder: Path, domain: Domain | None, *, shape: str | None = None
 ) -> tuple[list[Path], float, int]:
-    """Write a run for a grid of the dataset, check it on test pokes, and write model.json.
+    """Write a run for a grid of the dataset, checked on test pokes; an earlier export is replaced as a whole.
 
     The grid is that of the block in which `shape` stands, and the check is on test pokes in this block, or on
     any if none is of the test part. Without `shape`, that of the only block.
@@ -231,7 +253,7 @@ def write_bundle(
     Returns
     -------
     The files, the largest relative difference from torch, and the number of pokes checked. InputError if
-    the difference is above `TOLERANCE`; the files are then removed.
+    the difference is above `TOLERANCE`; the folder is then as it was.
     """
     if shape is not None and shape not in store.shapes:
         raise InputError(f"--shape {shape}: expected one of {', '.join(store.shapes)}")
@@ -244,12 +266,27 @@ def write_bundle(
     [(_, _, checked)] = scenes.parts(
         pokes_of(MemoryDataset(store, rows[some]).__getitems__(np.arange(len(some))))
     )
+    _exportable(run)
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as part:
+        files, wrong = _write_parts(run, scene, checked, domain, Path(part))
+        for name in reversed(FILES):  # a folder without model.json is seen to be incomplete
+            (folder / name).unlink(missing_ok=True)
+        for path in files:
+            path.replace(folder / path.name)
+    return [folder / path.name for path in files[:-1]], wrong, len(some)
+
+
+def _write_parts(
+    run: Run, scene: Scene, checked: Pokes, domain: Domain | None, folder: Path
+) -> tuple[list[Path], float]:
+    """Write the files, model.json last, and check them; these, and the largest difference from torch."""
     files = export(run, scene, folder)
     wrong = largest_difference(folder, run, scene, checked)
     if not wrong <= TOLERANCE:
-        for path in files.values():
-            path.unlink()
-        raise InputError(f"{folder}: ONNX is {wrong:.1e} off torch, more than {TOLERANCE:g}; files removed")
+        raise InputError(
+            f"{run.folder}: its ONNX is {wrong:.1e} off torch, more than {TOLERANCE:g}; nothing was written"
+        )
     about = {
         "uuid": run.uuid,
         "law": run.law,
@@ -263,7 +300,7 @@ def write_bundle(
     if run.model.takes_clock:
         about["clock"] = CLOCK
     (folder / "model.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
-    return list(files.values()), wrong, len(some)
+    return [*files.values(), folder / "model.json"], wrong
 
 
 class CegnnPart(nn.Module):

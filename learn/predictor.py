@@ -23,21 +23,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from learn.data import Store, open_store, split_of_run
+from learn.data import Store, open_store
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
-from learn.training import Run, load_run
-from learn.validity import (
-    Check,
-    Domain,
-    domain_of,
-    poke_values,
-    unknown_checks,
-)
+from learn.training import Run, check_dataset, known_domain, load_run
+from learn.validity import Check, Domain, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
 
@@ -172,10 +166,7 @@ class Predictor:
     """
 
     def __init__(self, run: Run, store: Store) -> None:
-        if run.uuid != store.uuid:
-            raise InputError(
-                f"{run.folder}: trained on dataset {run.uuid}, but {store.location} is {store.uuid}"
-            )
+        check_dataset(run.uuid, run.folder, store)
         self.run, self.store = run, store
         self.domain = known_domain(run, store)
 
@@ -322,13 +313,6 @@ def _first_lower(text: str) -> str:
     return text[:1].lower() + text[1:].rstrip(".")
 
 
-def known_domain(run: Run, store: Store) -> Domain | None:
-    """The domain recorded with a run, or derived from its dataset; None if neither is available."""
-    if run.domain is not None:
-        return run.domain
-    return domain_of(store, split_of_run(store, run).train) if run.uuid == store.uuid else None
-
-
 def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:
     """Load a trained run for predictions.
 
@@ -346,22 +330,11 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
     if not folders:
         raise InputError("expected the folder of a run, got none")
     runs = [load_run(folder) for folder in folders]
-    for other in runs[1:]:
-        if other.uuid != runs[0].uuid:
-            raise InputError(
-                f"{other.folder}: trained on dataset {other.uuid}, {runs[0].folder} on {runs[0].uuid}"
-            )
-    store = open_store(dataset or runs[0].location, verify=False)
+    joined = join_runs(runs) if len(runs) > 1 else runs[0]
+    store = open_store(dataset or joined.location, verify=False)
     if len(runs) == 1:
-        return Predictor(runs[0], store)
-    parts = [split_of_run(store, one).train for one in runs]
-    for other, part in zip(runs[1:], parts[1:], strict=True):
-        if not np.array_equal(part, parts[0]):
-            raise InputError(
-                f"{other.folder}: expected runs that differ in seed alone, this one was trained on other"
-                f" pokes than {runs[0].folder}"
-            )
+        return Predictor(joined, store)
     domains = [known_domain(one, store) for one in runs]
     known = [domain for domain in domains if domain is not None]
-    joined = replace(join_runs(runs), domain=Domain.common(known) if len(known) == len(runs) else None)
-    return Predictor(joined, store)
+    common = Domain.common(known) if len(known) == len(runs) else None
+    return Predictor(replace(joined, domain=common), store)

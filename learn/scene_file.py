@@ -16,7 +16,7 @@ import torch
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from learn._yaml import first_fault, read_yaml
+from learn._yaml import Finite, first_fault, read_yaml
 from learn.data._format import RIGID
 from learn.data.setup import Setup
 from learn.data.store import Store
@@ -32,10 +32,9 @@ class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[float, Field(strict=True, gt=0, lt=1000)]
-Pair = tuple[Number, Number]
-Triple = tuple[Number, Number, Number]
+Pair = tuple[Finite, Finite]
+Triple = tuple[Finite, Finite, Finite]
 Name = Annotated[str, Field(strict=True, min_length=1)]
 
 
@@ -88,7 +87,7 @@ class Cube(_Strict):
     kind: Literal["cube"]
     side_mm: Length
     centre_mm: Triple
-    angle_deg: Number = 0.0
+    angle_deg: Finite = 0.0
 
     @property
     def half_mm(self) -> Triple:

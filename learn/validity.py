@@ -11,20 +11,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
-from learn._yaml import first_fault
+from learn._yaml import Finite, first_fault
 from learn.data._format import RIGID
 from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 
 Floats = NDArray[np.float64]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Quantity(NamedTuple):

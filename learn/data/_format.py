@@ -23,9 +23,14 @@ Rows = Literal["fixed", "poke", "frame", "node", "triangle", "value", "geometry"
 
 @dataclass(frozen=True, kw_only=True)
 class Needed:
-    """A required array. `row`: shape of one row (None: not checked); `kinds`: NumPy's letters of its type."""
+    """A required array.
+
+    `count`: number of rows (None: that of the others of its kind); `row`: shape of one row (None: not
+    checked); `kinds`: NumPy's letters of its type.
+    """
 
     rows: Rows
+    count: int | None = None
     kinds: str = "f"
     row: tuple[int, ...] | None = ()
     units: str | None = None
@@ -36,8 +41,8 @@ ATTRIBUTES = ("uuid", "fingerprint", "model", "pokes", "shapes", "softness", "pa
 
 # fmt: off
 ARRAYS: dict[str, Needed] = {
-    "grid_rest": Needed(rows="fixed", row=(GRID, 3), units="m"),
-    "level_depth": Needed(rows="fixed", units="m"),
+    "grid_rest": Needed(rows="fixed", count=GRID, row=(GRID, 3), units="m"),
+    "level_depth": Needed(rows="fixed", count=LEVELS, units="m"),
     "profile": Needed(rows="geometry", kinds="u", row=(GRID, GRID, LEVELS), units="1"),
     "done": Needed(rows="poke", kinds="b"),
     "status": Needed(rows="poke", kinds="u"),
@@ -116,7 +121,7 @@ def check_arrays(
             if name not in group:
                 raise InputError(f"{location}: array {name} is missing")
             array: Any = group[name]
-        if not isinstance(array, zarr.Array) or (array.ndim == 0 and needed.rows != "fixed"):
+        if not isinstance(array, zarr.Array) or array.ndim == 0:
             raise InputError(f"{location}: {name}: expected an array with rows")
         _check_array(f"{location}: {name}", array, needed)
         if needed.rows == "fixed":
@@ -135,12 +140,17 @@ def _check_array(where: str, array: Any, needed: Needed) -> None:
         raise InputError(f"{where}: its type {array.dtype} is not as expected")
     if needed.row is not None and tuple(array.shape[1:]) != needed.row:
         raise InputError(f"{where}: rows of shape {tuple(array.shape[1:])}, expected {needed.row}")
+    if needed.count is not None and array.shape[0] != needed.count:
+        raise InputError(f"{where}: {array.shape[0]} rows, expected {needed.count}")
     if needed.units is not None and array.attrs.get("units") != needed.units:
         raise InputError(f"{where}: units {array.attrs.get('units')}, expected {needed.units}")
 
 
 def check_rows(location: str, table: dict[str, NDArray[Any]], attributes: dict[str, Any]) -> None:
     """Raise InputError unless the small tables, all read, are consistent."""
+    for name in ("frame_count", "node_count", "triangle_count"):
+        if len(table[name]) and not table[name].min() >= 0:
+            raise InputError(f"{location}: {name} has a value below 0")
     count = table["frame_count"]
     if not np.array_equal(table["frame_start"], np.cumsum(count) - count):
         raise InputError(f"{location}: frame_start does not add up frame_count")

@@ -200,7 +200,9 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         with ThreadPoolExecutor(_READERS) as readers:
             waiting = [self._ask(readers, int(shard), room_to_read[0]) for shard in shards[:1]]
             for number, count in enumerate(counts):
-                new_rows, new = self._got(int(shards[number]), room_to_read[number % 2], waiting.pop())
+                room_here = room_to_read[number % 2]
+                for part in waiting.pop():
+                    part.result()
                 if number + 1 < len(shards):
                     spare = room_to_read[(number + 1) % 2]
                     waiting.append(self._ask(readers, int(shards[number + 1]), spare))
@@ -209,7 +211,8 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
                     yield make_batch(self.store, rows[pick], held[pick])
                     free = np.concatenate([free, pick])
                 place, free = free[:count], free[count:]
-                rows[place], held[place] = new_rows, new
+                rows[place] = self._rows_of(int(shards[number]))
+                self._fill(held, place, int(shards[number]), room_here)
                 full = np.concatenate([full, place])
                 full = random.permutation(full) if self.seed is not None else full
         for first in range(0, len(full), self.batch):
@@ -242,10 +245,10 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
             if a < b
         ]
 
-    def _got(
-        self, shard: int, room: Floats32, asked: list[Future[Floats32]]
-    ) -> tuple[NDArray[np.int64], Floats32]:
-        for part in asked:
-            part.result()
-        rows, (start, stop) = self._rows_of(shard), self._span(shard)
-        return rows, room[: len(rows)] if len(rows) == stop - start else room[rows - start]
+    def _fill(self, held: Floats32, place: NDArray[np.int64], shard: int, room: Floats32) -> None:
+        """Copy a shard's frames from the room that it was read into to their places in the buffer."""
+        start, stop = self._span(shard)
+        at = self._rows_of(shard) - start
+        for first in range(0, len(at), self.batch):  # in slices, since an index of rows makes a copy
+            some = slice(first, first + self.batch)
+            held[place[some]] = room[some] if len(at) == stop - start else room[at[some]]

@@ -40,7 +40,7 @@ from learn.evaluation.summary import Outside, Row, by_depth, by_distance, by_sof
 from learn.metrics import Predictions
 from learn.models import Ensemble, Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
-from learn.training import Recipe, Run
+from learn.training import Recipe, Run, known_domain
 from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
@@ -162,11 +162,17 @@ def evaluate(
     runs, store : runs to evaluate, and the dataset. On a dataset other than the training one (`parts_of`)
         there are no baselines, and the intervals are those saved with the run.
     baselines, clouds : fit baselines; predict on other point clouds.
-    ensemble : also evaluate runs of one model and training part, from different seeds, as an ensemble, before
-        the single runs. InputError if no two runs can be joined.
+    ensemble : also evaluate runs that differ in seed alone as an ensemble (`ensembles`), before the single
+        runs.
     device : device on which the models predict; baselines run on the CPU, to which the models return.
     on_progress : called before each step.
+
+    Raises
+    ------
+    InputError
+        If a run is given twice, does not fit the dataset, or with `ensemble` no two can be joined.
     """
+    _check_once(runs)
     found = Evaluation(runs=runs, store=store, device=torch.device(device))
     here = Scenes.of(store)
     scenes = here.to(found.device)
@@ -223,36 +229,75 @@ class _Steps:
         self._done += 1
 
 
+def _check_once(runs: list[Run]) -> None:
+    """Raise InputError if a run is given twice: it would count as two, with a spread of zero."""
+    places = [run.folder.resolve() for run in runs]
+    for run, place in zip(runs, places, strict=True):
+        if places.count(place) > 1:
+            raise InputError(f"{run.folder}: given twice, expected each run once")
+
+
 def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
-    """Ensembles of runs of one model and training part (`join_runs`), with names; InputError if none."""
+    """Ensembles of the runs that differ in seed alone (`join_runs`), with names.
+
+    InputError if there are none, or the runs are of several datasets.
+    """
     groups: dict[str, list[Run]] = {}
     for run in runs:
-        groups.setdefault(f"{run.recipe.model} {_part(run.recipe)}", []).append(run)
+        _check_one_dataset(runs[0], run)
+        groups.setdefault(repr(_but_for_the_seed(run.recipe)), []).append(run)
+    names = dict(zip(runs, _names(runs), strict=True))
     joined = [
-        (join_runs(group), f"{group[0].recipe.model}, {len(group)} together")
+        (join_runs(group), f"{names[group[0]]}, {len(group)} together")
         for group in groups.values()
-        if len({run.recipe.seed for run in group}) == len(group) > 1
+        if len(group) > 1
     ]
     if not joined:
-        raise InputError(
-            "an ensemble needs two or more runs of one model and training part, each of another seed"
-        )
+        raise InputError("an ensemble needs two or more runs that differ in seed alone")
     return joined
 
 
 def join_runs(runs: list[Run]) -> Run:
-    """Join runs to an ensemble, as a run with the folder of the first."""
+    """Join runs to an ensemble, as a run with the folder of the first.
+
+    InputError if they differ in more than the seed and the recipe's name, or two have the same seed.
+    """
+    first = runs[0]
+    for k, run in enumerate(runs[1:], 1):
+        _check_one_dataset(first, run)
+        wanted = f"{run.folder}: expected runs that differ in seed alone, this one"
+        before, now = (_but_for_the_seed(one.recipe).model_dump() for one in (first, run))
+        for key, value in now.items():
+            if value != before[key]:
+                raise InputError(f"{wanted} has {key} {value}, {first.folder} {before[key]}")
+        if (run.groups, run.statistics.frames) != (first.groups, first.statistics.frames):
+            raise InputError(f"{wanted} was trained on other pokes than {first.folder}")
+        for other in runs[:k]:
+            if other.recipe.seed == run.recipe.seed:
+                raise InputError(f"{wanted} has seed {run.recipe.seed}, as {other.folder}")
     return replace(
         runs[0],
         model=Ensemble([run.model for run in runs]).eval(),
+        weights=tuple(digest for run in runs for digest in run.weights),
         members=tuple(run.folder for run in runs),
     )
+
+
+def _check_one_dataset(first: Run, run: Run) -> None:
+    """Raise InputError unless both runs are of one dataset: a member may have seen another's test part."""
+    if run.uuid != first.uuid:
+        raise InputError(f"{run.folder}: trained on dataset {run.uuid}, {first.folder} on {first.uuid}")
+
+
+def _but_for_the_seed(recipe: Recipe) -> Recipe:
+    """The recipe without what the members of an ensemble may differ in."""
+    return recipe.model_copy(update={"seed": 0, "name": "-"})
 
 
 def _names(runs: list[Run]) -> list[str]:
     """Model of each run, with the recipe's name and number where recipes of one model differ."""
     alike: dict[str, list[str]] = {}
-    texts = [repr(run.recipe.model_copy(update={"fold": 0, "seed": 0, "name": "-"})) for run in runs]
+    texts = [repr(_but_for_the_seed(run.recipe).model_copy(update={"fold": 0})) for run in runs]
     for run, text in zip(runs, texts, strict=True):
         known = alike.setdefault(run.recipe.model, [])
         known += [text] if text not in known else []
@@ -271,9 +316,10 @@ def _part(recipe: Recipe) -> str:
 
 def _distance(run: Run, store: Store, predictions: Predictions) -> Floats:
     """Distance of frames from the run's trained ranges (f,); 0 if these are not known."""
-    if run.domain is None:
+    domain = known_domain(run, store)
+    if domain is None:
         return np.zeros(len(predictions.depth))
-    return frame_distances(run.domain, store, predictions.poke, predictions.depth, predictions.clock)
+    return frame_distances(domain, store, predictions.poke, predictions.depth, predictions.clock)
 
 
 def _covered(intervals: Intervals, one: Predicted) -> Covered:

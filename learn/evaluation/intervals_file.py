@@ -1,26 +1,32 @@
-"""Intervals in a run's folder: written by `learn.evaluate`, read for predictions."""
+"""Intervals in a run's folder: written by `learn.evaluate`, read for predictions.
+
+Those of an ensemble are in the folder of one of its members, whichever is named first.
+"""
 
 from __future__ import annotations
 
-import hashlib
 import json
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from learn._yaml import first_fault
+from learn._yaml import Finite, first_fault
 from learn.errors import InputError
 from learn.evaluation.intervals import N_FEATURES, Intervals
 from learn.metrics import RING_EDGES_MM
 from learn.training import Run
-from learn.training.run_folder import BEST, write_whole
+from learn.training.run_folder import write_whole
 
 
 def save_intervals(run: Run, intervals: Intervals) -> Path:
-    """Write intervals to the folder of the run, or of the first run of an ensemble."""
-    path = _path(run)
-    content = {"members": _members(run), "weights": _weights(run), **intervals.as_dict()}
+    """Write intervals to the run's folder, an ensemble's in place of its own or to its first run's."""
+    try:
+        kept = _kept(run)
+    except InputError:  # damaged, or of other weights: they are overwritten
+        kept = None
+    path = _paths(run)[0] if kept is None else kept[0]
+    content = {"members": _members(run), "weights": sorted(run.weights), **intervals.as_dict()}
     write_whole(path, (json.dumps(content) + "\n").encode())
     return path
 
@@ -44,9 +50,25 @@ def replaced_text(run: Run, intervals: Intervals) -> str | None:
 
 def load_intervals(run: Run) -> Intervals | None:
     """Read a run's intervals, None if there are none; InputError if damaged or of other members."""
-    path = _path(run)
-    if not path.is_file():
-        return None
+    kept = _kept(run)
+    return None if kept is None else kept[1]
+
+
+def _kept(run: Run) -> tuple[Path, Intervals] | None:
+    """A run's intervals with their file; the fault of the first file if there are only others'."""
+    faults = []
+    for path in _paths(run):
+        if path.is_file():
+            try:
+                return path, _read(path, run)
+            except InputError as error:
+                faults.append(error)
+    if faults:
+        raise faults[0]
+    return None
+
+
+def _read(path: Path, run: Run) -> Intervals:
     try:
         content = _File.model_validate(json.loads(path.read_text(encoding="utf-8"))).model_dump()
     except ValidationError as error:
@@ -60,7 +82,7 @@ def load_intervals(run: Run) -> Intervals | None:
         raise InputError(
             f"{path}: belongs to {', '.join(members)}; learn.evaluate --ensemble writes it again"
         )
-    if weights is not None and weights != _weights(run):
+    if weights is not None and weights != sorted(run.weights):
         raise InputError(
             f"{path}: belongs to other weights (trained further, or other members: "
             f"{', '.join(members) or run.folder.name}); learn.evaluate"
@@ -69,7 +91,6 @@ def load_intervals(run: Run) -> Intervals | None:
     return Intervals(**content)
 
 
-_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 _Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
 
 
@@ -80,14 +101,14 @@ class _File(BaseModel):
     level: _Positive
     promised: _Positive
     pokes: Annotated[int, Field(strict=True, ge=1)]
-    scale: Annotated[list[_Number], Field(min_length=N_FEATURES, max_length=N_FEATURES)]
+    scale: Annotated[list[Finite], Field(min_length=N_FEATURES, max_length=N_FEATURES)]
     factors: Annotated[
         list[_Positive], Field(min_length=len(RING_EDGES_MM) - 1, max_length=len(RING_EDGES_MM) - 1)
     ]
     force_scale: _Positive
     force: _Positive
-    interior: tuple[_Number, _Number] = (0.0, 0.0)  # files from before 2026-11-25 have neither
-    force_interior: tuple[_Number, _Number] = (0.0, 0.0)
+    interior: tuple[Finite, Finite] = (0.0, 0.0)  # files from before 2026-11-25 have neither
+    force_interior: tuple[Finite, Finite] = (0.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod
@@ -99,15 +120,12 @@ class _File(BaseModel):
         return {old.get(key, key): [value, 0.0] if key in old else value for key, value in values.items()}
 
 
-def _path(run: Run) -> Path:
-    return run.folder / ("intervals-together.json" if run.members else "intervals.json")
+def _paths(run: Run) -> list[Path]:
+    """The files in which a run's intervals can be."""
+    if not run.members:
+        return [run.folder / "intervals.json"]
+    return [folder / "intervals-together.json" for folder in run.members]
 
 
 def _members(run: Run) -> list[str]:
     return [folder.resolve().name for folder in run.members]
-
-
-def _weights(run: Run) -> list[str]:
-    """sha256 of the weights of the run, or of each member of an ensemble, in any order of these."""
-    folders = run.members or (run.folder,)
-    return sorted(hashlib.sha256((folder / BEST).read_bytes()).hexdigest() for folder in folders)

@@ -18,6 +18,7 @@ from learn.evaluation.pictures import draw_forces, draw_learning, draw_poke, enc
 from learn.evaluation.summary import Row, Value, over_folds
 from learn.metrics import METRICS, RING_EDGES_MM
 from learn.training import read_log
+from learn.training.run_folder import write_whole
 
 PAPER_METRICS = ("force", "mean", "max", "tip")
 _FEW_POKES = 10
@@ -200,9 +201,20 @@ def no_intervals(found: Evaluation) -> list[str]:
     return [f"{name}: {reason}." for name, reason in found.no_intervals.items()]
 
 
+def _spread(found: Evaluation) -> str:
+    """Sentence on what the models' standard deviations are over: runs, or frames where there is one run."""
+    several = [name for name in found.models if len(found.folds[name]) > 1]
+    one = [name for name in found.models if name not in several]
+    if not several or not one:
+        return f"± is the standard deviation over {'runs' if several else 'frames, as in the paper'}."
+    return (
+        f"± is the standard deviation over runs for {', '.join(several)}; over frames, as in the paper, for "
+        f"{', '.join(one)}."
+    )
+
+
 def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
     """All tables by title, each with its notes."""
-    spread = "runs" if len(found.runs) > 1 else "frames, as in the paper"
     size = f"{counted(found.pokes, 'test poke')}, {counted(found.frames, 'frame')}"
     everything = {name: levels["all"] for name, levels in found.tables.items()}
     result: dict[str, tuple[Table, list[str]]] = {
@@ -210,8 +222,8 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
         "The paper's table": (
             paper_table(found),
             [
-                f"{size}. ± is the standard deviation over {spread}. The paper's data are others (1,320 "
-                "pokes, about 14 to 16 mm deep): its rows are for orientation."
+                f"{size}. {_spread(found)} The paper's data are others (1,320 pokes, about 14 to 16 mm "
+                "deep): its rows are for orientation."
             ],
         ),
         "Symmetry": (
@@ -239,7 +251,8 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
         result["Other clouds"] = full_table(found.clouds, "points"), [note]
     if found.depths:
         rows = {name: over_folds(folds) for name, folds in found.depths.items()}
-        note = "Test frames by depth" + (", means over folds." if len(found.runs) > 1 else ".")
+        several = any(len(folds) > 1 for folds in found.depths.values())
+        note = "Test frames by depth" + (", means over the runs of a model." if several else ".")
         result["By depth"] = full_table(rows, "model, depth"), [note]
     if found.outside:
         note = (
@@ -254,9 +267,10 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
 
 
 def write_report(found: Evaluation, folder: Path) -> None:
-    """Write FOLDER/report.html, tables.json and the pictures (learning, best, median, worst, force .png)."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "tables.json").write_text(json.dumps(as_json(found), indent=1) + "\n", encoding="utf-8")
+    """Write FOLDER/report.html, tables.json and the pictures (learning, best, median, worst, force .png).
+
+    All are made before the first is written, so that a fault leaves an earlier report as it was.
+    """
     store, first = found.store, found.runs[0]
     assert found.predictions is not None
     titles = {"only": "the only test poke"}
@@ -267,9 +281,6 @@ def write_report(found: Evaluation, folder: Path) -> None:
     pictures["force"] = encoded(draw_forces(found.predictions))
     logs = {run.folder.name: lines for run in found.runs if (lines := read_log(run.folder))}
     learning = encoded(draw_learning(logs)) if logs else ""
-    for name, picture in {"learning": learning, **pictures}.items():
-        if picture:
-            (folder / f"{name}.png").write_bytes(base64.b64decode(picture))
     about = [
         ("runs", ", ".join(str(run.folder.name) for run in found.runs)),
         ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes, uuid {store.uuid}"),
@@ -296,7 +307,16 @@ def write_report(found: Evaluation, folder: Path) -> None:
         metrics=METRICS.values(),
         pictures=pictures.items(),
     )
-    (folder / "report.html").write_text(html, encoding="utf-8")
+    files = {
+        f"{name}.png": base64.b64decode(picture)
+        for name, picture in {"learning": learning, **pictures}.items()
+        if picture
+    }
+    files["tables.json"] = (json.dumps(as_json(found), indent=1) + "\n").encode()
+    files["report.html"] = html.encode()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        write_whole(folder / name, content)
 
 
 def as_json(found: Evaluation) -> dict[str, Any]:

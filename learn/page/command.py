@@ -82,6 +82,9 @@ def page(
         from learn.predictor import load
 
         load_plugins(plugin or [])
+        for option, path in (("--out", out), ("--parts", parts)):
+            if path is not None and path.is_dir():
+                raise InputError(f"{option} {path}: expected the name of a file, this is a folder")
         if run.suffix == ".zip":
             if parts is not None or shape or dataset is not None or pokes is not None:
                 raise InputError(

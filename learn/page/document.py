@@ -19,12 +19,12 @@ import zlib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import torch
 from jinja2 import Environment, StrictUndefined
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import first_fault
 from learn.errors import InputError
@@ -54,6 +54,33 @@ class Written:
     gzipped: int
     interiors: int
     pokes: int
+
+
+class _Halo(BaseModel):
+    low: float
+    high: float
+
+
+class _About(BaseModel):
+    """The description for the script: keys that it has to have, and the form of those that are read here."""
+
+    arrays: dict[str, Any]
+    block: dict[str, Any]
+    checks: list[dict[str, Any]]
+    grid: int
+    halo: _Halo | None
+    interior_inputs: list[str]
+    interiors: Annotated[list[dict[str, Any]], Field(min_length=1)]
+    levels: int
+    rod: dict[str, Any]
+    simulated: list[dict[str, Any]]
+    sliders: dict[str, Any]
+    softness: list[dict[str, Any]]
+    start: dict[str, Any]
+
+
+class _Described(BaseModel):
+    about: _About
 
 
 class _Stated(BaseModel):
@@ -104,6 +131,7 @@ class Parts:
             with zipfile.ZipFile(path) as file:
                 text, arrays, graph = (file.read(name) for name in _MEMBERS)
             stated = _Stated.model_validate_json(text)
+            _Described.model_validate_json(text)
         except ValidationError as error:
             raise InputError(f"{path}: page.json: {first_fault(error)}") from None
         except (OSError, KeyError, zipfile.BadZipFile, zlib.error, EOFError) as error:

@@ -3,7 +3,7 @@
 from learn.training.loop import DivergedError, Trainer
 from learn.training.process_group import ProcessGroup, make_device, make_process_group
 from learn.training.recipe import RECIPES, Recipe, load_recipe
-from learn.training.run_folder import Run, load_run, read_log
+from learn.training.run_folder import Run, check_dataset, known_domain, load_run, read_log
 
 __all__ = [
     "RECIPES",
@@ -12,6 +12,8 @@ __all__ = [
     "Recipe",
     "Run",
     "Trainer",
+    "check_dataset",
+    "known_domain",
     "load_recipe",
     "load_run",
     "make_device",

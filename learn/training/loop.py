@@ -144,9 +144,10 @@ class Trainer:
                     self._check(line)
                 self.epoch += 1
                 if self.group.is_main and log is not None:
-                    self._save(line)
                     line |= {"seconds": seconds, "samples_per_second": len(self.split.train) / seconds}
+                    # first the log: of an epoch that is not in last.pt, resuming drops its line
                     log.add(line)
+                    self._save(line)
                 self.group.wait()
                 self._report(0, line)
         finally:
@@ -374,7 +375,7 @@ class Trainer:
                 )
             return None
         content = load_checkpoint(path)
-        check_dataset(content, path, self.store)
+        check_dataset(content["uuid"], path, self.store)
         before, now = recipe_of(content, path).model_dump(), self.recipe.model_dump()
         seen = content.get("seen", self.seen)
         frames = content["statistics"]["frames"], len(self.split.train)

@@ -12,14 +12,13 @@ import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 from torch import Tensor
 
-from learn._yaml import first_fault, read_yaml
+from learn._yaml import Finite, first_fault, read_yaml
 from learn.data.loaders import Batch
 from learn.data.statistics import Statistics
 from learn.errors import InputError
 from learn.models.base import MODELS, OLD_NAMES
 from learn.models.scene import Response, Scene
 
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, gt=0, lt=1e6)]
 Fraction = Annotated[float, Field(strict=True, ge=0, lt=1)]
 Count = Annotated[int, Field(strict=True, ge=1, le=65536)]

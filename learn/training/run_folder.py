@@ -8,6 +8,8 @@ validation part. Both carry the dataset's uuid, the recipe, the statistics and t
 from __future__ import annotations
 
 import contextlib
+import errno
+import hashlib
 import importlib
 import io
 import json
@@ -19,13 +21,14 @@ from typing import Annotated, Any
 import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from learn._yaml import first_fault
+from learn._yaml import Finite, first_fault
+from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
 from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import MODELS, Model, make_model
 from learn.training.recipe import Recipe, check_recipe
-from learn.validity import Domain
+from learn.validity import Domain, domain_of
 
 FORMAT = 1
 LAST, BEST, LOG = "last.pt", "best.pt", "log.jsonl"
@@ -45,8 +48,9 @@ class Run:
         before they were recorded.
     epoch : the epoch that was kept, counted from 1.
     model : the model in evaluation mode, on the CPU.
-    domain : domain of validity; None for runs trained before it was recorded (see
-        `learn.validity.domain_of`).
+    weights : sha256 of the file that the model was read from, or of each member's: the folder may hold others
+        by now, if the run is still trained.
+    domain : domain of validity; None for runs trained before it was recorded (see `known_domain`).
     members : folders of the runs that were joined to this one as an ensemble; empty for one run.
     """
 
@@ -60,26 +64,24 @@ class Run:
     seen: frozenset[str]
     epoch: int
     model: Model
+    weights: tuple[str, ...]
     domain: Domain | None = None
     members: tuple[Path, ...] = ()
-
-
-_Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 
 class _Statistics(BaseModel):
     model_config = ConfigDict(extra="forbid")
     frames: Annotated[int, Field(ge=1)]
-    displacement: _Number
-    depth_mean: _Number
-    depth_max: _Number
-    log_force_mean: _Number
-    log_force_sd: _Number
-    force_rms: _Number
-    log_modulus_mean: _Number | None = None
-    block_height: Annotated[_Number, Field(gt=0)] | None = None
-    log_time_mean: _Number | None = None
-    log_speed_mean: _Number | None = None
+    displacement: Finite
+    depth_mean: Finite
+    depth_max: Finite
+    log_force_mean: Finite
+    log_force_sd: Finite
+    force_rms: Finite
+    log_modulus_mean: Finite | None = None
+    block_height: Annotated[Finite, Field(gt=0)] | None = None
+    log_time_mean: Finite | None = None
+    log_speed_mean: Finite | None = None
 
 
 class _Content(BaseModel):
@@ -122,7 +124,9 @@ def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file atomically: it holds these bytes, or its earlier content."""
+    """Write a file atomically: it holds these bytes, or its earlier content. OSError if it cannot be."""
+    if path.is_dir():  # "." has no name to derive another from
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     beside = path.with_suffix(".part")
     try:
         with beside.open("wb") as file:
@@ -138,10 +142,18 @@ def write_whole(path: Path, data: bytes) -> None:
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
     """A checkpoint's content; InputError if it is missing, damaged or of another format."""
+    return _content_of(_bytes_of(path), path)
+
+
+def _bytes_of(path: Path) -> bytes:
     if not path.is_file():
         raise InputError(f"{path}: no such checkpoint")
+    return path.read_bytes()
+
+
+def _content_of(data: bytes, path: Path) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        content: dict[str, Any] = torch.load(io.BytesIO(data), map_location="cpu", weights_only=True)
     except Exception as error:  # unpickling breaks in many ways
         text = " ".join(str(error).split())[:120]
         raise InputError(f"{path}: not a readable checkpoint ({text})") from None
@@ -155,12 +167,10 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
     return content
 
 
-def check_dataset(content: dict[str, Any], path: Path, store: Store) -> None:
-    """Raise InputError if a checkpoint was trained on another dataset."""
-    if content["uuid"] != store.uuid:
-        raise InputError(
-            f"{path}: trained on dataset {content['uuid']}, but {store.location} is {store.uuid}"
-        )
+def check_dataset(uuid: str, where: Path, store: Store, *, hint: str = "") -> None:
+    """Raise InputError if the checkpoint or run at `where` was trained on another dataset."""
+    if uuid != store.uuid:
+        raise InputError(f"{where}: trained on dataset {uuid}, but {store.location} is {store.uuid}{hint}")
 
 
 def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
@@ -188,7 +198,8 @@ def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, nam
 def load_run(folder: Path | str) -> Run:
     """Load the best model of a run's folder. InputError if there is none, or it is damaged."""
     path = Path(folder) / BEST
-    content = load_checkpoint(path)
+    data = _bytes_of(path)
+    content = _content_of(data, path)
     recipe = recipe_of(content, path)
     statistics = Statistics(**content["statistics"])
     model = make_model(recipe.model, statistics)
@@ -206,8 +217,16 @@ def load_run(folder: Path | str) -> Run:
         seen=frozenset(content.get("seen", ())),
         epoch=content["epoch"],
         model=model,
+        weights=(hashlib.sha256(data).hexdigest(),),
         domain=None if domain is None else Domain.from_dict(domain, str(path)),
     )
+
+
+def known_domain(run: Run, store: Store) -> Domain | None:
+    """The domain recorded with a run, or derived from its dataset; None if the store is another."""
+    if run.domain is not None or run.uuid != store.uuid:
+        return run.domain
+    return domain_of(store, split_of_run(store, run).train)
 
 
 class Log:

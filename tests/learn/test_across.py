@@ -147,12 +147,11 @@ def test_what_is_not_three_folds_of_one_kind_has_none(answers: list[Predicted]) 
 
 
 def _run(folder: Path, *members: Path) -> Run:
-    """A run as far as its intervals need it."""
+    """A run as far as its intervals need it, with its path for the sum of its weights."""
     for place in members or (folder,):
         place.mkdir(exist_ok=True, parents=True)
-        if not (place / "best.pt").exists():
-            (place / "best.pt").write_bytes(str(place).encode())
-    return cast(Run, SimpleNamespace(folder=folder, members=members))
+    weights = tuple(str(place) for place in members or (folder,))
+    return cast(Run, SimpleNamespace(folder=folder, members=members, weights=weights))
 
 
 def test_intervals_belong_to_the_weights_that_they_were_made_for(tmp_path: Path) -> None:
@@ -160,14 +159,19 @@ def test_intervals_belong_to_the_weights_that_they_were_made_for(tmp_path: Path)
     run = _run(tmp_path / "run")
     save_intervals(run, own)
     assert load_intervals(run) == own
-    (run.folder / "best.pt").write_bytes(b"trained further")
+    run.weights = ("trained further",)  # type: ignore[misc]
     with pytest.raises(InputError, match="belongs to other weights"):
         load_intervals(run)
     a, b, c = (tmp_path / name / "s0" for name in "abc")
     save_intervals(_run(a, a, b), own)
-    assert load_intervals(_run(a, b, a)) == own  # in any order
+    assert load_intervals(_run(b, b, a)) == own  # in any order
+    later = replace(own, pokes=77)
+    save_intervals(_run(b, b, a), later)
+    assert load_intervals(_run(a, a, b)) == later  # no second file, which would be stale
     with pytest.raises(InputError, match="other members"):
         load_intervals(_run(a, a, c))  # of the same name
+    (b / "intervals-together.json").write_text("{", encoding="utf-8")
+    assert load_intervals(_run(b, b, a)) == later
 
 
 def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> None:

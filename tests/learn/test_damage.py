@@ -13,12 +13,17 @@ import pytest
 import torch
 import zarr
 
+import learn.bench
 import learn.evaluate
 import learn.export
+import learn.onnx_bundle
 import learn.predict
 import learn.train
+import learn.training
 from learn.data import open_store
 from learn.errors import InputError
+from learn.evaluation import Evaluation
+from learn.evaluation.report import write_report
 from learn.training import Recipe, Trainer, load_run, read_log
 from learn.training.run_folder import load_checkpoint, save_checkpoint
 from tests.learn.commands import call, refused, train_small
@@ -144,6 +149,45 @@ def test_a_damaged_log_is_no_fault(run: Path, text: str) -> None:
     assert read_log(run) == []
 
 
+def test_an_export_that_fails_leaves_the_earlier_one(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def write(_part: object, _inputs: object, path: Path, names: list[str], _out: object) -> None:
+        if names == stop:
+            raise KeyboardInterrupt
+        path.write_text("new")
+
+    def texts() -> dict[str, str]:
+        return {path.name: path.read_text() for path in folder.iterdir()}
+
+    folder, difference = run / "onnx", 1.0
+    earlier = dict.fromkeys(("encoder.onnx", "poke.onnx", "model.json"), "old")
+    folder.mkdir()
+    for name, text in earlier.items():
+        (folder / name).write_text(text)
+    monkeypatch.setattr(learn.onnx_bundle, "need_packages", lambda: None)
+    monkeypatch.setattr(learn.onnx_bundle, "write_graph", write)
+    monkeypatch.setattr(learn.onnx_bundle, "largest_difference", lambda *_: difference)
+    stop = ["code", "vectors", "clear", *learn.onnx_bundle.ROD]  # of poke.onnx, after encoder.onnx
+    assert call(learn.export.app, run).exit_code != 0
+    assert texts() == earlier
+    stop = []
+    refused(call(learn.export.app, run), "off torch, more than 1e-05; nothing was written")
+    assert texts() == earlier
+    difference = 0.0
+    done = call(learn.export.app, run)
+    assert done.exit_code == 0, done.output
+    assert [text for text in texts().values() if text == "new"] == ["new", "new"]
+    assert set(texts()) == set(earlier)
+    (folder / "poke.onnx").unlink()
+    refused(call(learn.bench.app, run, "--repeats", 3), f"{folder}: expected", "poke.onnx is missing")
+
+
+def test_a_report_that_cannot_be_made_is_not_begun(run: Path, store: Path, tmp_path: Path) -> None:
+    found = Evaluation(runs=[load_run(run)], store=open_store(store), device=torch.device("cpu"))
+    with pytest.raises(AssertionError):  # it has no predictions
+        write_report(found, tmp_path / "report")
+    assert not (tmp_path / "report").exists()
+
+
 def test_a_run_that_cannot_be_resumed_says_why(store: Path, run: Path) -> None:
     content = load_checkpoint(run / "last.pt")
     recipe = Recipe(**content["recipe"])
@@ -232,6 +276,24 @@ def test_a_link_out_of_the_store_is_not_followed(store: Path, tmp_path: Path) ->
         open_store(copy)
 
 
+def test_stopped_before_the_first_checkpoint_there_is_nothing_to_resume(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(learn.training, "Trainer", stop)
+    (tmp_path / "r.yaml").write_text("model: invariant-gnn-small\n")
+    command = (store, "--recipe", tmp_path / "r.yaml", "--threads", 1, "--out", tmp_path / "run")
+    stopped = call(learn.train.app, *command)
+    assert stopped.exit_code == 130
+    sentence = f"Stopped; no epoch was finished: the same command begins again ({tmp_path / 'run'}).\n"
+    assert stopped.stderr == sentence
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "last.pt").touch()
+    assert "Stopped; the same command with --resume goes on" in call(learn.train.app, *command).stderr
+
+
 RESUMED = Recipe(name="tiny", epochs=3, batch=8, model="invariant-gnn-small")
 
 
@@ -271,7 +333,9 @@ def test_a_disk_that_fills_up_later_is_resumed_to_the_same_weights(
     assert load_checkpoint(tmp_path / "parts" / "last.pt")["epoch"] == 1
     assert not (tmp_path / "parts" / "last.part").exists()
     load_run(tmp_path / "parts")
+    assert [line["epoch"] for line in read_log(tmp_path / "parts")] == [0, 1]
     Trainer(open_store(store), RESUMED, tmp_path / "parts", resume=True).train()
+    assert [line["epoch"] for line in read_log(tmp_path / "parts")] == [0, 1, 2]
     one, other = (load_checkpoint(tmp_path / name / "last.pt")["model"] for name in ("whole", "parts"))
     assert all(torch.equal(one[key], other[key]) for key in one)
 

@@ -20,12 +20,13 @@ import learn.train
 from learn.data import MemoryDataset, contact_points, open_store, split_of, split_pokes
 from learn.data.clouds import scattered
 from learn.errors import InputError
-from learn.evaluation import evaluate, parts_of, summarise
+from learn.evaluation import ensembles, evaluate, join_runs, parts_of, summarise
 from learn.evaluation.predictions import interpolation_error_mm, predict_on
+from learn.evaluation.report import tables
 from learn.metrics import METRICS
 from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_on
 from learn.scene_file import load_poke, scene_and_poke
-from learn.training import load_run
+from learn.training import Run, load_run
 from tests.learn.small_store import write_store
 
 POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
@@ -105,14 +106,52 @@ def test_a_run_whose_dataset_is_now_divided_otherwise_is_refused(store: Path, ru
 def test_runs_that_differ_in_more_than_the_fold_have_rows_of_their_own(store: Path, run: Path) -> None:
     """Two runs tested on the same pokes: these count once, and recipes of one model are not averaged."""
     loaded, data = load_run(run), open_store(store)
-    other = replace(loaded, recipe=loaded.recipe.model_copy(update={"epochs": 77}))
-    same = replace(loaded, recipe=loaded.recipe.model_copy(update={"seed": 5}))
+    other = _changed(loaded, epochs=77)
+    same = replace(_changed(loaded, seed=5), domain=None)  # of before the domain was recorded
     alone = evaluate([loaded], data, baselines=False, clouds=False)
     both = evaluate([loaded, same], data, baselines=False, clouds=False)
     assert (both.pokes, both.frames, both.models) == (alone.pokes, alone.frames, ["invariant-gnn"])
+    first, second = (both.covered[f"invariant-gnn, fold 0{more}"] for more in ("", ", seed 5"))
+    assert (first.found, first.radius_mm) == (second.found, second.radius_mm)  # taken from the dataset
     apart = evaluate([loaded, other], data, baselines=False, clouds=False)
     name = loaded.recipe.name
     assert apart.models == [f"invariant-gnn ({name} 1)", f"invariant-gnn ({name} 2)"]
+    mixed = replace(both, models=[*both.models, "b"], folds={**both.folds, "b": alone.folds["invariant-gnn"]})
+    for found, words in (
+        (alone, "over frames, as in the paper."),
+        (apart, "over frames, as in the paper."),
+        (both, "over runs."),
+        (mixed, "over runs for invariant-gnn; over frames, as in the paper, for b."),
+    ):
+        assert f"± is the standard deviation {words}" in tables(found)["The paper's table"][1][0]
+
+
+def _changed(run: Run, **recipe: object) -> Run:
+    """The run with other keys of its recipe, and a folder named after these."""
+    folder = run.folder.with_name("-".join(f"{key}-{value}" for key, value in recipe.items()))
+    return replace(run, folder=folder, recipe=run.recipe.model_copy(update=recipe))
+
+
+def test_runs_that_differ_in_more_than_the_seed_are_not_joined(store: Path, run: Path) -> None:
+    loaded = load_run(run)
+    second, longer = _changed(loaded, seed=1, name="other"), _changed(loaded, epochs=77)
+    [(joined, name)] = ensembles([loaded, second, longer])
+    assert joined.members == (loaded.folder, second.folder)
+    assert name == f"invariant-gnn ({loaded.recipe.name} 1), 2 together"
+    refused: list[tuple[list[Run], str]] = [
+        ([loaded, replace(second, uuid="other")], "trained on dataset other"),
+        ([loaded, second, _changed(loaded, seed=0)], f"seed-0: .* has seed 0, as {run}"),
+        ([loaded, replace(second, groups={})], "other: expected .* was trained on other pokes than"),
+        ([loaded, longer], "needs two or more runs that differ in seed alone"),
+    ]
+    for runs, words in refused:
+        with pytest.raises(InputError, match=words):
+            ensembles(runs)
+    with pytest.raises(InputError, match=r"epochs-77: expected .* has epochs 77, .*run 3"):
+        join_runs([loaded, longer])
+    again = replace(loaded, folder=run.parent / "x" / ".." / run.name)
+    with pytest.raises(InputError, match="given twice"):
+        evaluate([loaded, again], open_store(store))
 
 
 @pytest.mark.slow
@@ -135,7 +174,7 @@ def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
     for fold, folder in enumerate(runs):
         others = [len(np.unique(poke[rows])) for k, rows in enumerate(tested) if k != fold]
         kept = json.loads((folder / "intervals.json").read_text())
-        assert kept["pokes"] == sum(others) - sum(others) // 2  # the other half fits the scale
+        assert kept["pokes"] == sum(others)
 
 
 def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
@@ -165,9 +204,9 @@ def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
     assert alone.exit_code == 2
     assert "two or more runs" in alone.stderr
     assert not (tmp_path / "alone").exists()
-    swapped = _call(learn.predict.app, run, run, scene, "--out", tmp_path / "swapped")
-    assert swapped.exit_code == 2
-    assert "--ensemble writes it again" in swapped.stderr
+    twice = _call(learn.predict.app, run, run, scene, "--out", tmp_path / "twice")
+    assert twice.exit_code == 2
+    assert "expected runs that differ in seed alone" in twice.stderr
 
 
 def test_an_ensemble_is_the_mean_of_its_members(store: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -256,12 +257,21 @@ def test_the_python_interface(run: Path, predictor: Predictor, tmp_path: Path) -
         learn.load(run, dataset=write_store(tmp_path / "o.zarr", seed=4, frames=1))
 
 
-def test_an_ensemble_is_of_runs_that_differ_in_seed_alone(store: Path, run: Path, tmp_path: Path) -> None:
-    same = train_small(store, tmp_path / "seed", "--epochs", 1, "--seed", 5)
-    assert len(learn.load([run, same]).run.members) == 2
-    other = train_small(store, tmp_path / "fold", "--epochs", 1, "--fold", 1)
-    with pytest.raises(InputError, match="fold: expected runs that differ in seed alone"):
-        learn.load([run, other])
+def test_an_ensemble_is_of_runs_that_differ_in_seed_alone(run: Path, tmp_path: Path) -> None:
+    content = load_checkpoint(run / "best.pt")
+    for key, value in {"seed": 5, "fold": 1, "batch": 7}.items():
+        (tmp_path / key).mkdir()
+        changed = {**content, "recipe": {**content["recipe"], key: value}}
+        save_checkpoint(tmp_path / key / "best.pt", changed)
+    joined = learn.load([run, tmp_path / "seed"]).run
+    assert joined.members == (run, tmp_path / "seed")
+    sums = [hashlib.sha256((folder / "best.pt").read_bytes()).hexdigest() for folder in joined.members]
+    (tmp_path / "seed" / "best.pt").unlink()  # what a run that is still trained replaces
+    assert joined.weights == tuple(sums)
+    for key, value in {"fold": 1, "batch": 7}.items():
+        words = f"{key}: expected runs that differ in seed alone, this one has {key} {value}"
+        with pytest.raises(InputError, match=words):
+            learn.load([run, tmp_path / key])
 
 
 def test_the_shipped_scene_is_read() -> None:

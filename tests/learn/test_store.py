@@ -102,6 +102,12 @@ def _lose(folder: Path) -> None:
     sorted(p for p in (folder / "grid_displacement" / "c").rglob("*") if p.is_file())[-1].unlink()
 
 
+def _take_back(folder: Path) -> None:
+    """A poke of fewer frames than none, with starts that add up."""
+    for name, value in {"frame_count": [-1, 9], "frame_start": [0, -1]}.items():
+        _edit(name, lambda a, value=value: a.__setitem__(slice(2), value))(folder)  # type: ignore[misc]
+
+
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
@@ -120,6 +126,9 @@ def _lose(folder: Path) -> None:
         (_edit("depth", lambda a: a.attrs.update(units="mm")), "depth: units mm, expected m"),
         (_edit("rod_force", _nan), "rod_force has a value that is not finite"),
         (_edit("frame_count", lambda a: a.__setitem__(0, 3)), "frame_start"),
+        (_take_back, "frame_count has a value below 0"),
+        (_edit("level_depth", lambda a: a.resize((64,))), "level_depth: 64 rows, expected 128"),
+        (_edit("grid_rest", lambda a: a.resize((16, 32, 3))), "grid_rest: 16 rows, expected 32"),
         (_edit("direction", lambda a: a.__setitem__(0, [0, 0, 2])), "unit length"),
         (_edit("poke_geometry", lambda a: a.__setitem__(0, 77)), "poke_geometry"),
         (_cut, "was altered"),
@@ -162,6 +171,12 @@ def test_a_damaged_chunk_is_named_even_without_the_manifest(copy: Path) -> None:
     store = open_store(copy, verify=False)
     with pytest.raises(InputError, match="grid_displacement: cannot be read"):
         store.displacement(slice(40, 48))
+
+
+def test_a_lost_profile_is_no_homogeneous_tissue(copy: Path) -> None:
+    next(path for path in (copy / "profile" / "c").rglob("*") if path.is_file()).unlink()
+    with pytest.raises(InputError, match=r"profile/c/.* is missing, the store is incomplete"):
+        open_store(copy, verify=False)
 
 
 def test_folds_by_shape_never_share_a_shape(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import threading
+import tracemalloc
 from collections.abc import Iterator
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -77,6 +78,21 @@ def test_memory_is_bounded_by_the_pool(store: Store, monkeypatch: pytest.MonkeyP
         most = max(most, read - given)
         given += len(batch)
     assert most * 1024 * 12 <= data.bytes_held < store.frames * 1024 * 12
+
+
+def test_memory_is_bounded_where_a_part_takes_some_frames_of_a_shard(tmp_path: Path) -> None:
+    """Every second frame takes what all take, and some batches and chunks: no copy of a shard."""
+    store = open_store(write_store(tmp_path / "s.zarr", frames=16, chunk=4, shard=96))
+    rows = np.arange(0, store.frames, 2)
+    data = StreamDataset(store, rows, batch=4, shuffle_buffer=1, seed=1)
+    tracemalloc.start()
+    try:
+        seen = sorted(_frames(data))
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert seen == rows.tolist()
+    assert most < data.bytes_held + 24 * 1024 * 12
 
 
 @pytest.mark.parametrize("workers", [0, 2])

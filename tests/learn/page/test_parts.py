@@ -12,6 +12,7 @@ import pytest
 from learn.page import command
 from learn.page.document import Parts, parts_of
 from learn.predictor import Predictor
+from learn.training.run_folder import write_whole
 from tests.learn.commands import call, refused
 
 NEEDED = ("onnx", "onnxscript", "onnxruntime")
@@ -56,6 +57,7 @@ def _without(saved: Path, path: Path, name: str, content: bytes | None) -> Path:
 def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(saved) as file:
         stated = json.loads(file.read("page.json"))
+    bare = json.dumps({**stated, "about": {}}).encode()
     (tmp_path / "text.zip").write_text("no zip")
     cases = {
         tmp_path / "none.zip": "expected the parts of a page",
@@ -63,9 +65,17 @@ def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None
         _without(saved, tmp_path / "less.zip", "poke.onnx", None): "expected the parts of a page",
         _without(saved, tmp_path / "more.zip", "page.json", json.dumps({**stated, "x": 1}).encode()): "key x",
         _without(saved, tmp_path / "bad.zip", "page.json", b"{"): "page.json",
+        _without(saved, tmp_path / "bare.zip", "page.json", bare): "page.json: key about.arrays: this key is",
     }
     for path, sentence in cases.items():
         refused(call(command.app, path, "--out", tmp_path / "out.html"), str(path), sentence)
     refused(call(command.app, saved, "--shape", "shape-0"), "its content is settled")
     refused(call(command.app, saved, "--pokes", 8), "its content is settled")
     assert not (tmp_path / "out.html").exists()
+
+
+def test_a_folder_is_no_file_to_write(tmp_path: Path) -> None:
+    for flag in ("--out", "--parts"):
+        refused(call(command.app, tmp_path, flag, "."), f"{flag} .: expected the name of a file")
+    with pytest.raises(IsADirectoryError):
+        write_whole(Path(), b"")
