@@ -250,5 +250,5 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         start, stop = self._span(shard)
         at = self._rows_of(shard) - start
         for first in range(0, len(at), self.batch):  # in slices, since an index of rows makes a copy
-            some = slice(first, first + self.batch)
+            some = slice(first, min(first + self.batch, len(at)))
             held[place[some]] = room[some] if len(at) == stop - start else room[at[some]]

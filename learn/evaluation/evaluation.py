@@ -36,7 +36,16 @@ from learn.evaluation.predictions import (
     predict_part,
     symmetry_error,
 )
-from learn.evaluation.summary import Outside, Row, by_depth, by_distance, by_softness, over_folds, summarise
+from learn.evaluation.summary import (
+    Outside,
+    Row,
+    by_cover,
+    by_depth,
+    by_distance,
+    by_softness,
+    over_folds,
+    summarise,
+)
 from learn.metrics import Predictions
 from learn.models import Ensemble, Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
@@ -109,7 +118,8 @@ class Evaluation:
     no_intervals : reason why a run has no intervals, by run.
     intervals : intervals of each run (or ensemble), from the other folds if there are enough.
     clouds : metrics by point cloud; interpolation_mm: error of their interpolated truth [mm].
-    depths : metrics by model and band of depth, one entry per fold.
+    depths, covers : metrics by model and band of depth, and of cover over the inclusion below the contact;
+        one entry per fold.
     deeper : metrics up to and beyond the depth that was trained on.
     outside : errors by run and distance from the trained ranges, on a dataset other than the training one.
     predictions : predictions of the first run (or ensemble), for pictures.
@@ -131,6 +141,7 @@ class Evaluation:
     clouds: dict[str, Row] = field(default_factory=dict)
     interpolation_mm: float = float("nan")
     depths: dict[str, list[Row]] = field(default_factory=dict)
+    covers: dict[str, list[Row]] = field(default_factory=dict)
     deeper: dict[str, Row] = field(default_factory=dict)
     outside: dict[str, Outside] = field(default_factory=dict)
     predictions: Predictions | None = None
@@ -193,8 +204,9 @@ def evaluate(
         tested[split.test] = True
         if found.predictions is None:
             found.predictions = predictions
-        for band, row in by_depth(predictions).items():
-            found.depths.setdefault(f"{name}, {band}", []).append(row)
+        for bands, rows in ((found.depths, by_depth(predictions)), (found.covers, by_cover(predictions))):
+            for band, row in rows.items():
+                bands.setdefault(f"{name}, {band}", []).append(row)
         predicted.append(Predicted(run, name, predictions, _distance(run, store, predictions)))
         _look_closer(found, predicted[-1], scenes, split, clouds=clouds and not found.clouds)
         run.model.cpu()

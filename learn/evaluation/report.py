@@ -249,11 +249,15 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
             f"{found.interpolation_mm:.4f} mm off the grid's stored values."
         )
         result["Other clouds"] = full_table(found.clouds, "points"), [note]
-    if found.depths:
-        rows = {name: over_folds(folds) for name, folds in found.depths.items()}
-        several = any(len(folds) > 1 for folds in found.depths.values())
-        note = "Test frames by depth" + (", means over the runs of a model." if several else ".")
-        result["By depth"] = full_table(rows, "model, depth"), [note]
+    for bands, what, title in (
+        (found.depths, "depth", "By depth"),
+        (found.covers, "cover over the inclusion below the contact", "By cover"),
+    ):
+        if bands:
+            rows = {name: over_folds(folds) for name, folds in bands.items()}
+            several = any(len(folds) > 1 for folds in bands.values())
+            note = f"Test frames by {what}" + (", means over the runs of a model." if several else ".")
+            result[title] = full_table(rows, f"model, {title.removeprefix('By ')}"), [note]
     if found.outside:
         note = (
             "Frames by how far they lie outside what was trained, in widths of the trained ranges "
@@ -344,6 +348,7 @@ def as_json(found: Evaluation) -> dict[str, Any]:
         "no_intervals": found.no_intervals,
         "clouds": {n: plain(v) for n, v in found.clouds.items()},
         "depths": {n: plain(over_folds(v)) for n, v in found.depths.items()},
+        "covers": {n: plain(over_folds(v)) for n, v in found.covers.items()},
         "outside": {n: asdict(one) for n, one in found.outside.items()},
         "deeper": {n: plain(v) for n, v in found.deeper.items()},
         "cloud_interpolation_mm": found.interpolation_mm,

@@ -1,4 +1,4 @@
-"""Metrics of predictions as table rows: all frames, by softness, depth, distance from trained ranges."""
+"""Metrics of predictions as rows: all frames, by softness, depth, cover, distance from trained ranges."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from learn.evaluation.intervals import Coverage, Intervals, coverage
 from learn.metrics import METRICS, Metric, Predictions
 
 DEPTH_BAND_MM = 5.0
+COVER_BANDS_MM = (0.0, 4.0, 8.0, 16.0, np.inf)  # edges of the bands of tissue above the inclusion
 # edges of the bands of distance from the trained ranges, in widths of these
 DISTANCE_BANDS = (0.0, 0.1, 0.3, 1.0, np.inf)
 Floats = NDArray[np.float64]
@@ -55,6 +56,18 @@ def by_depth(predictions: Predictions) -> dict[str, Row]:
         f"{DEPTH_BAND_MM * (k - 1):g} to {DEPTH_BAND_MM * k:g} mm": summarise(predictions.where(band == k))
         for k in np.unique(band).tolist()
     }
+
+
+def by_cover(predictions: Predictions) -> dict[str, Row]:
+    """Metrics for each band of `COVER_BANDS_MM` that has frames: of the tissue below the contact."""
+    cover = predictions.interior[:, 1]
+    rows = {}
+    for low, high in itertools.pairwise(COVER_BANDS_MM):
+        mine = (cover > low) & (cover <= high)
+        if mine.any():
+            name = f"{low:g} to {high:g} mm" if np.isfinite(high) else f"above {low:g} mm"
+            rows[name] = summarise(predictions.where(mine))
+    return rows
 
 
 @dataclass(frozen=True, kw_only=True)

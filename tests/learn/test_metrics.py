@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from learn.evaluation import by_softness, over_folds, summarise
+from learn.evaluation.summary import by_cover
 from learn.metrics import METRICS, Predictions
 
 
@@ -48,6 +51,14 @@ def _cases() -> Predictions:
 )
 def test_values(name: str, values: list[float]) -> None:
     np.testing.assert_allclose(METRICS[name].values(_cases()), values, atol=1e-6)
+
+
+def test_frames_are_told_apart_by_the_cover_below_the_contact() -> None:
+    cases = dataclasses.replace(_cases(), interior=np.array([[9.0, 4.0], [9.0, 16.5]]))
+    rows = by_cover(cases)
+    assert list(rows) == ["0 to 4 mm", "above 16 mm"]
+    assert [row["rel force"].mean for row in rows.values()] == [0.5, 0.25]
+    assert not by_cover(_cases())  # it is not known
 
 
 def test_tip_error_is_relative_to_the_depth() -> None:
