@@ -23,6 +23,8 @@ RINGS = torch.linspace(0, 1, 10)  # centres of bumps in log(1 + distance / 2 mm)
 WIDTHS = (5e-3, 12e-3, 25e-3)  # m; neighbourhoods of the contact
 N_POINT = 10 + len(RINGS) + 12
 N_POKE = 4
+N_COVER = 3
+LEAST_CLEAR = 1 / 256  # least fraction of a column that is soft, for the mean of its inverse
 
 
 # At first contact displacement and force over depth tend to a limit, and so must the network's inputs: TOUCH
@@ -146,6 +148,16 @@ class Contact:
         along = torch.einsum("kbc,bk->bc", v, self.push)
         up = torch.einsum("kbc,bk->bc", v, self.here)
         return torch.cat([*scalars, along, up], dim=1), v
+
+
+def of_cover(cover: Any, depth: Any, facing: Any, xp: Any = torch) -> list[Any]:
+    """Invariants of the soft tissue's thickness below the contact.
+
+    A layer that is thinner than the rod is wide is the stiffer the thinner it is (Hayes et al., J. Biomech.
+    5, 1972), and stiffens without limit as the rod nears what is rigid. `facing`: component of the push
+    along the normal, less than 0.
+    """
+    return [xp.log(cover / 4), 1 / cover, -facing * depth / cover]
 
 
 class Place(NamedTuple):

@@ -34,8 +34,9 @@ SEEN = 6  # channels of the code in the features of the contact
 N_CLOCK = 3  # invariants of a poke with time
 
 
-# version 1 lacked the indenter's surface; 2 weighted points equally, and had a modulus input without effect
-@register_model("invariant-gnn", version=3)
+# version 1 lacked the indenter's surface; 2 weighted points equally, and had a modulus input without effect;
+# 3 did not see the inverse of the soft tissue's thickness
+@register_model("invariant-gnn", version=4)
 class InvariantGnn(Model):
     """The surrogate.
 
@@ -71,7 +72,7 @@ class InvariantGnn(Model):
         code, turning = self.encoder.n_code, self.encoder.n_vectors
         self.look = nn.Linear(code, SEEN, bias=False)
         seen = 3 * SEEN
-        about = _contact.N_POKE + 3 * seen + (self.log_modulus is not None)
+        about = _contact.N_POKE + 3 * seen + _contact.N_COVER + (self.log_modulus is not None)
         about += N_CLOCK if self.takes_clock else 0
         self.from_code = nn.Linear(code, hidden)
         self.from_poke = nn.Linear(about, hidden, bias=False)
@@ -117,7 +118,9 @@ class InvariantGnn(Model):
         contact = Contact(scene, pokes)
         vectors = encoded.vectors.index_select(2, inclusion)
         scalars, toward = contact.seen(self.look(encoded.code).index_select(1, inclusion))
-        about = torch.cat([contact.poke, scalars, *self._of_modulus(pokes), *self._of_clock(pokes)], dim=1)
+        cover = _contact.of_cover(self._cover(encoded, contact, inclusion), contact.depth, contact.poke[:, 2])
+        known = [torch.stack(cover, dim=1), *self._of_modulus(pokes), *self._of_clock(pokes)]
+        about = torch.cat([contact.poke, scalars, *known], dim=1)
         unit = contact.unit.permute(2, 0, 1)[..., None]
         push = contact.push.T[:, None, :, None]
         toward = torch.einsum("nbk,kbc->nbc", contact.unit, toward)
@@ -147,6 +150,18 @@ class InvariantGnn(Model):
             force=unit_force * softplus(kappa),
         )
 
+    def _cover(self, encoded: Encoded, contact: Contact, inclusion: Tensor) -> Tensor:
+        """Thickness of the soft tissue below the contact (b,), in rod radii.
+
+        A harmonic mean, since the stiffnesses of columns side by side add up.
+        """
+        inverse = 1 / encoded.clear.clamp(min=_contact.LEAST_CLEAR).index_select(1, inclusion)
+        return self.column(encoded.scene) / (contact.near[0] * inverse).sum(dim=0)
+
+    def column(self, scene: Scene) -> float:
+        """The unit of `Encoded.clear` in rod radii."""
+        return (self.encoder.height or scene.height) / scene.rod_radius
+
     def _of_modulus(self, pokes: Pokes) -> list[Tensor]:
         """Centred logarithm of the modulus, unless the modulus only scales the force."""
         if self.log_modulus is None:
@@ -166,8 +181,8 @@ class InvariantGnn(Model):
         return [torch.stack(parts, dim=1).float()]
 
 
-# version 3 had two rounds of messages, the first at two radii, and 8 vectors
-@register_model("invariant-gnn-small", version=4)
+# version 3 had two rounds of messages, the first at two radii, and 8 vectors; 4 as invariant-gnn of version 3
+@register_model("invariant-gnn-small", version=5)
 def small(statistics: Statistics) -> InvariantGnn:
     """Half as wide, with one round of messages: faster, at a larger error."""
     return InvariantGnn(statistics, hidden=32, messages=8, directions=4, scales=((0,),), vectors=4)

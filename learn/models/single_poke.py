@@ -54,6 +54,8 @@ class SinglePoke:
         self._looked = model.look(code).numpy()
         self._code = model.from_code(code).T.contiguous()
         self._clear = encoded.clear[:, inclusion].double().numpy()
+        self._per_clear = 1 / np.maximum(self._clear, _contact.LEAST_CLEAR)
+        self._column = model.column(scene)
         vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
         self._vectors = np.ascontiguousarray(vectors.numpy())
         prior = model.prior.coefficients.numpy()  # (radial, factors, 3)
@@ -167,7 +169,9 @@ class SinglePoke:
         deep, log_deep, modulus = poke
         facing = float(here @ push)
         of_poke = np.array([deep / 4, log_deep, facing, facing * deep / 4], dtype=np.float32)
-        known = [] if self._log_modulus is None else [[math.log(modulus) - self._log_modulus]]
+        cover = self._column / float(near[0] @ self._per_clear)
+        known = [_contact.of_cover(cover, deep, facing, np)]
+        known += [] if self._log_modulus is None else [[math.log(modulus) - self._log_modulus]]
         means = near @ self._looked
         moments = ((self._scales * near[:, None] * r).reshape(-1, r.shape[1]) @ self._looked).reshape(
             len(WIDTHS), 3, -1

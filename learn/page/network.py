@@ -50,6 +50,7 @@ class RowNetwork(nn.Module):
         super().__init__()
         self.model = model
         self.radius, self.edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
+        self.column = model.column(scene)
         self.points = (scene.points / self.radius).T.contiguous()
         self.normals = scene.normals.T.contiguous()
         self.log_area = torch.log(scene.area)
@@ -93,6 +94,9 @@ class RowNetwork(nn.Module):
             (near64 @ looked64).reshape(-1),
         ]
         about.append(both.reshape(-1))
+        inverse = 1 / clear.clamp(min=_contact.LEAST_CLEAR)
+        cover = self.column / (near64[0] * inverse).sum()
+        about.append(torch.stack(_contact.of_cover(cover, deep64, facing)))
         if model.log_modulus is not None:
             about.append((torch.log(modulus) - model.log_modulus)[None])
         of_poke = torch.cat(about)[None].float()

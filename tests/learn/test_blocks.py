@@ -21,7 +21,8 @@ import learn.train
 from learn.data import MemoryDataset, Store, open_store, split_of, statistics
 from learn.errors import InputError
 from learn.evaluation import evaluation, predict_part, summarise
-from learn.models import Scenes, make_model, pokes_of, scene_on
+from learn.models import InvariantGnn, Pokes, Scenes, make_model, pokes_of, scene_on
+from learn.models._contact import Contact, of_cover
 from learn.models._encoder import _to_height
 from learn.page.content import content_of
 from learn.training import Recipe, Trainer
@@ -142,6 +143,31 @@ def test_depths_are_in_units_of_the_mean_height(store: Store) -> None:
     np.testing.assert_array_equal(_to_height(one, 2.0)[0, 0], (levels >= 80).float())
     shallow = (levels >= 20) & (levels < 40) | (levels >= 64)
     np.testing.assert_array_equal(_to_height(one, 0.5)[0, 0], shallow.float())
+
+
+def test_the_network_sees_the_thickness_of_the_tissue_below_the_contact(store: Store) -> None:
+    """In rod radii, whatever the mean height of the blocks; of two layers side by side the harmonic mean."""
+    setup = store.setups[1].with_block((0.1, 0.09, 0.032))
+    levels = np.arange(128) * (32 / 128)
+    layer = np.where(levels >= 5, 255, 0)
+    right = setup.points[:, :1] > 0
+    halves = np.where(right & (levels >= 5) | (levels >= 20), 255, 0)
+    profile = np.stack([np.broadcast_to(layer, halves.shape), halves]).astype(np.uint8)
+    scene = scene_on(setup, profile)
+    start = torch.tensor([[0.0, 0.0, setup.top]], dtype=torch.float64).expand(2, 3)
+    down = torch.tensor([[0.0, 0.0, -1.0]], dtype=torch.float64).expand(2, 3)
+    depth, modulus = torch.full((2, 2), 1e-3, dtype=torch.float64)
+    pokes = Pokes(geometry=torch.arange(2), start=start, direction=down, depth=depth, modulus=modulus)
+    sizes = statistics(MemoryDataset(store, np.arange(store.frames)).batches(64), store)
+    for height in (None, 0.02, 0.05):
+        model = make_model("invariant-gnn", dataclasses.replace(sizes, block_height=height))
+        assert isinstance(model, InvariantGnn)
+        contact = Contact(scene, pokes)
+        with torch.no_grad():
+            cover = 1e3 * setup.rod_radius * model._cover(model.encode(scene), contact, scene.rigid_index)
+        assert cover.tolist() == pytest.approx([5.0, 2 / (1 / 5 + 1 / 20)], rel=0.02)
+    of_layer = of_cover(cover / 2.5, contact.depth, contact.poke[:, 2])
+    assert [float(value[0]) for value in of_layer] == pytest.approx([np.log(0.5), 0.5, 1 / 5], rel=0.02)
 
 
 def test_a_dataset_of_one_height_is_encoded_as_by_its_own(tmp_path: Path) -> None:
