@@ -158,6 +158,8 @@ def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
     used = {t.material for t in data.trials}
     if wanted is None:
         return [m for m in data.materials if m in used]
+    if not wanted:
+        raise OptionError("material", None, f"expected some of {', '.join(sorted(used))}, got none")
     for name in wanted:
         if name not in used:
             raise OptionError("material", name, f"expected some of {', '.join(sorted(used))}")

@@ -252,6 +252,7 @@ def test_a_card_has_the_law_of_the_fit_whose_viscosity_it_has(tmp_path: Path) ->
         (["--model", "yeoh"], "--model yeoh"),
         (["--model", ","], "at least one law"),
         (["--material", "S7"], "--material S7"),
+        (["--material", ""], "--material: expected some of S0, got none"),
     ],
 )
 def test_bad_wishes_end_in_one_sentence(
