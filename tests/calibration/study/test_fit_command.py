@@ -265,6 +265,29 @@ def test_bad_wishes_end_in_one_sentence(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "expected traced photographs of beams of S0, nothing else shows K/G"),
+        (
+            ["--objective", "dice"],
+            "expected --objective likelihood, with dice K/G is held",
+        ),
+    ],
+)
+def test_a_free_bulk_ratio_that_nothing_shows_is_refused(
+    tmp_path: Path, arguments: list[str], words: str
+) -> None:
+    """It was held, without a word."""
+    stretch = np.linspace(1.05, 1.5, 8)
+    table = {"stretch": stretch, "nominal_stress_kPa": 30.0 * (stretch - stretch**-2)}
+    data = write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table})
+    done = fit(str(data), "--free-bulk-ratio", "--out", str(tmp_path / "out"), *arguments)
+    assert done.exit_code == 2
+    assert done.stderr.strip() == f"error: --free-bulk-ratio: {words}"
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_malformed_folder_writes_nothing(tmp_path: Path) -> None:
     experiment = made(tmp_path / "experiment", TRUTH, **MESH)
     text = yaml.safe_load((experiment / "experiment.yaml").read_text())
