@@ -91,6 +91,8 @@ def plan_fit(experiment: str | Path | Experiment, request: FitRequest) -> FitPla
         )
     cards = _starts(request.start, wanted, objective)
     parts.check(data, wanted, specs, cards)
+    if request.free_bulk_ratio:
+        _check_seen(data, wanted, objective)
     setup = known_rig(request.rig, data, wanted, objective=objective)
     folder = Path(request.out)
     options = FitOptions(
@@ -158,10 +160,26 @@ def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
     used = {t.material for t in data.trials}
     if wanted is None:
         return [m for m in data.materials if m in used]
+    if not wanted:
+        raise OptionError("material", None, f"expected some of {', '.join(sorted(used))}, got none")
     for name in wanted:
         if name not in used:
             raise OptionError("material", name, f"expected some of {', '.join(sorted(used))}")
     return list(dict.fromkeys(wanted))
+
+
+def _check_seen(data: Experiment, materials: Sequence[str], objective: str) -> None:
+    """Refuse a free K/G where the fit has no outlines, which alone show it."""
+    if objective != "likelihood":
+        raise OptionError(
+            "free_bulk_ratio", None, f"expected --objective likelihood, with {objective} K/G is held"
+        )
+    if not any(isinstance(t, BeamTrial) and t.traced and t.material in materials for t in data.trials):
+        raise OptionError(
+            "free_bulk_ratio",
+            None,
+            f"expected traced photographs of beams of {', '.join(materials)}, nothing else shows K/G",
+        )
 
 
 def known_rig(

@@ -155,13 +155,14 @@ class DiagnosisResult:
     def write(self, folder: str | Path) -> Path:
         """Write report.html, pictures, cards and, last, diagnosis.json; the path of the page.
 
-        A folder with a diagnosis.json is complete.
+        A folder with a diagnosis.json is complete: that of an earlier diagnosis is removed first.
         """
         from calibration.diagnosis.card import write_cards
         from calibration.diagnosis.report import write_report
 
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
+        (folder / "diagnosis.json").unlink(missing_ok=True)
         write_report(self.diagnosis, self.model, folder, title=self.experiment.name)
         write_cards(folder / "cards", self.diagnosis, self.experiment)
         text = json.dumps(self.diagnosis.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
@@ -220,11 +221,15 @@ class PredictionResult:
         return {k: {m: p.coverage(r, m) for m in p.models} for k, r in p.of_kind().items()}
 
     def write(self, folder: str | Path) -> Path:
-        """Write report.html, prediction.png and, last, prediction.json; the path of the page."""
+        """Write report.html, prediction.png and, last, prediction.json; the path of the page.
+
+        A folder with a prediction.json is complete: that of an earlier prediction is removed first.
+        """
         from calibration.prediction.page import write_page
         from calibration.prediction.schema import file_of
 
         folder = Path(folder)
+        (folder / "prediction.json").unlink(missing_ok=True)
         page, *_ = write_page(self.prediction, folder)
         write_whole(folder / "prediction.json", file_of(self.prediction).model_dump_json(indent=1) + "\n")
         return page

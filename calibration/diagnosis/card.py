@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
 from calibration.diagnosis._card_numbers import (
     Modulus,
@@ -38,6 +39,7 @@ from calibration.study.cards import card, save
 from tisim import laws
 
 RIG = "rig.yaml"
+_BY = "by calibration.diagnose"  # in the provenance of cards of a diagnosis, and of no others
 
 
 def check_names(materials: Collection[str]) -> None:
@@ -49,12 +51,16 @@ def check_names(materials: Collection[str]) -> None:
 def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> list[Path]:
     """Write folder/MATERIAL.yaml for each diagnosed material, and folder/rig.yaml if rig effects are named.
 
-    A rig.yaml of an earlier diagnosis is removed. Without a named cause the cards are of the baseline.
-    Returns the paths written. InputError if a material is named "rig".
+    A rig.yaml and material cards of an earlier diagnosis are removed; cards of another origin stay. Without a
+    named cause the cards are of the baseline. Returns the paths written. InputError if a material is named
+    "rig".
     """
     check_names((diagnosis.extended or diagnosis.baseline).shear_modulus_Pa)
     known = moduli(diagnosis)
     (folder / RIG).unlink(missing_ok=True)
+    for earlier in sorted(folder.glob("*.yaml")):
+        if _diagnosed(earlier):
+            earlier.unlink()
     heading = "Moduli in Pa, density in kg/m3. Diagnosed: see provenance and effects."
     written = []
     for name, modulus in known.items():
@@ -65,6 +71,15 @@ def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> l
         content = _rig(at_fault, diagnosis, experiment)
         written.append(save(folder / RIG, content, "What a diagnosis found beside the specimens: see use."))
     return written
+
+
+def _diagnosed(path: Path) -> bool:
+    """True for the material card of a diagnosis."""
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError):
+        return False
+    return isinstance(content, dict) and "laws" in content and _BY in str(content.get("provenance", ""))
 
 
 def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Experiment) -> dict[str, Any]:
@@ -182,7 +197,7 @@ def _provenance(
     numbers = diagnosis.extended or diagnosis.baseline
     fit = diagnosis.fit
     lines = [
-        f"Fitted to experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.diagnose,"
+        f"Fitted to experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) {_BY},"
         f" baseline law {diagnosis.subject.law}, other laws filled in from the moduli: shear modulus"
         f" {modulus.value:.5g} Pa,"
         f" reduced chi-square {numbers.reduced_chi2:.2f}.",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -102,9 +103,7 @@ class LabTest:
         InputError
             A cell is empty or no number; one sentence with the line.
         """
-        _, separator = self.file.tables.get(self.sheet, ((), ""))
-        given = [c for col in self.columns for c in col.cells if is_number(c)]
-        mark = decimals_of(self.file, given, decimals, separator=separator)
+        mark = self._mark(decimals)
         values = np.empty(len(column.cells))
         for k, cell in enumerate(column.cells):
             try:
@@ -121,6 +120,30 @@ class LabTest:
                     sheet=self.sheet,
                 )
         return values
+
+    def number_above(self, cell: str, decimals: str | None = None) -> float | None:
+        """A number above the table; None for what is no number.
+
+        One that can be read in two ways ("1,256") is read as in the table.
+
+        Raises
+        ------
+        InputError
+            The table does not tell how.
+        """
+        found = []
+        for mark in (".", ","):
+            with contextlib.suppress(ValueError):
+                found.append(number(cell, mark))
+        if len(set(found)) < 2:
+            return found[0] if found else None
+        return number(cell, self._mark(decimals, cell))
+
+    def _mark(self, decimals: str | None, *above: str) -> str:
+        """The mark of decimals of the table's numbers, and of some above it."""
+        _, separator = self.file.tables.get(self.sheet, ((), ""))
+        given = [c for col in self.columns for c in col.cells if is_number(c)]
+        return decimals_of(self.file, [*given, *above], decimals, separator=separator)
 
 
 def blocks(file: LabFile, sheet: Sheet) -> tuple[tuple[Block, ...], str]:

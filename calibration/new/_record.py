@@ -294,16 +294,18 @@ class Record:
         """A parameter above the table by its name, in SI.
 
         None where there is none with a unit, or several that differ: which of them is meant is asked.
+        InputError where its decimals cannot be told from thousands.
         """
         found: list[float] = []
         for name, text in self.test.parameters.items():
             if _NOT_THE_SPECIMEN.search(plain(name)) or not re.search(pattern, plain(name)):
                 continue
             own, in_name = name_and_unit(name)
-            value = re.match(r'"?([-+]?\d+(?:[.,]\d+)?)"?\s*(\S*)', text)
+            value = re.match(r'"?([-+]?\d+(?:[.,]\d+)*)"?\s*(\S*)', text)
             given = in_name if value and not value[2] else unit(value[2]) if value else None
             if value and given is not None and given.dimension == dimension and own:
-                found.append(float(value[1].replace(",", ".")) * given.factor)
+                size = self.test.number_above(value[1], self.entry.decimals)
+                found += [] if size is None else [size * given.factor]
         found = [value for value in found if value > 0]
         return found[0] if found and max(found) <= (1 + 1e-6) * min(found) else None
 

@@ -58,7 +58,7 @@ class _Amplitude(_Lenient):
 
 class _Effect(_Lenient):
     effect: str
-    parameters: dict[str, _Amplitude]
+    parameters: Annotated[dict[str, _Amplitude], Field(min_length=1)]
     applies_to: Literal["material", "shape"] = "material"
     scope: str = "all"
     becomes: Literal["viscosity", "softening", "fibres", "law"] | None = None

@@ -38,6 +38,8 @@ def chosen(experiment: Experiment, pattern: str, option: str) -> tuple[Trial, ..
             known = ", ".join(dict.fromkeys(v for t in experiment.trials if (v := BY[by](t))))
             raise OptionError(option, one, f"no trial has that {by}: expected some of {known or 'none'}")
         found += mine
+    if not found:
+        raise OptionError(option, None, "expected ids of trials, got none")
     return tuple(t for t in experiment.trials if t in found)
 
 

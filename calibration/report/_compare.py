@@ -9,6 +9,7 @@ from math import degrees
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._nuisances import CORNER_SD, SHARED
+from calibration.measurements.outlines._photographs import names_of
 from calibration.study.assessment import largest_by_chance
 from calibration.study.calibration import Calibration
 from calibration.study.cards import best, misfit_scale, usable
@@ -114,11 +115,9 @@ def _sizes(material: str, experiment: Experiment) -> dict[str, tuple[float, str]
     for trial in beams:
         for k in range(1, 9):
             sizes[f"clamp corner {k} of {trial.id}"] = (CORNER_SD * 1e3, "mm")
-        for capture in trial.captures:
-            if capture.outline is None:
-                continue
-            where = f"of {trial.id} at {capture.time:g} s"
-            for own, error in ((where, capture.outline.registration), (SHARED, capture.outline.shared)):
+        outlines = [c.outline for c in trial.captures if c.outline is not None]
+        for name, outline in zip(names_of(trial), outlines, strict=True):
+            for own, error in ((f"of {name}", outline.registration), (SHARED, outline.shared)):
                 sizes[f"shift x {own}"] = sizes[f"shift z {own}"] = (error.shift * 1e3, "mm")
                 sizes[f"roll {own}"] = (degrees(error.roll), "deg")
                 sizes[f"scale {own}"] = (error.scale * 100.0, "%")

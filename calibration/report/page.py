@@ -1,7 +1,9 @@
-"""The page of a calibration: one section a material, and the command that makes it again."""
+"""The page of a calibration: one section a material, and the commands that make it again."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import shlex
 from collections import Counter
@@ -28,22 +30,47 @@ from calibration.study.measurements import Measurements, measurements
 from tisim.view import View
 
 
-def command(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> str:
-    """The command line of these fits; seed and limits from the fits in `folder`, where they are still."""
-    words = ["python", "-m", "calibration.fit", str(experiment.folder)]
-    words += ["--model", ",".join(dict.fromkeys(r.law for r in results))]
+def commands(folder: Path, results: Sequence[Calibration], experiment: Experiment) -> list[str]:
+    """Command lines that make these fits again, one for all with equal options; seed and limits from the fits
+    in `folder`, where they are still."""
     used = {t.material for t in experiment.trials}
-    materials = dict.fromkeys(r.material for r in results)
-    if set(materials) != used:
-        words += ["--material", ",".join(materials)]
-    own = [r.label.partition("+")[0] for r in results]
-    terms = [name.removeprefix("ogden-") for name in own if name.startswith("ogden-")]
-    if terms:
-        words += ["--terms", terms[0]]
-    for spec in results[0].parts:
+    found = []
+    for options, alike in _by_options(folder, results).items():
+        words = ["python", "-m", "calibration.fit", str(experiment.folder)]
+        words += ["--model", ",".join(dict.fromkeys(r.law for r in alike))]
+        materials = dict.fromkeys(r.material for r in alike)
+        if set(materials) != used:
+            words += ["--material", _listed([*materials])]
+        found.append(shlex.join([*words, *options, "--out", str(folder)]))
+    return found
+
+
+def _by_options(folder: Path, results: Sequence[Calibration]) -> dict[tuple[str, ...], list[Calibration]]:
+    """Fits by the options of their commands.
+
+    A law that is no series takes no number of terms, and goes with the first fits of otherwise equal options.
+    """
+    series = {r.law for r in results if r.terms > 1}
+    found: dict[tuple[str, ...], dict[int, list[Calibration]]] = {}
+    for r in sorted(results, key=lambda r: r.law not in series):
+        own = found.setdefault(_options(folder, r), {})
+        own.setdefault(r.terms if r.law in series or not own else next(iter(own)), []).append(r)
+    order = {id(r): k for k, r in enumerate(results)}
+    groups = [
+        ((*(("--terms", str(n)) if n > 1 else ()), *options), sorted(alike, key=lambda r: order[id(r)]))
+        for options, by_terms in found.items()
+        for n, alike in by_terms.items()
+    ]
+    return dict(sorted(groups, key=lambda pair: order[id(pair[1][0])]))
+
+
+def _options(folder: Path, result: Calibration) -> tuple[str, ...]:
+    """Options of a fit's command beside its law, terms and material."""
+    words: list[str] = []
+    for spec in result.parts:
         asks = part_kind(spec).option
         words += [f"--{asks}"] if asks == spec else [f"--{asks}", spec]
-    header = _header(folder, results[0])
+    header = _header(folder, result)
     if header.get("objective", "likelihood") != "likelihood":
         words += ["--objective", str(header["objective"])]
     if header.get("free_bulk_ratio"):
@@ -53,11 +80,21 @@ def command(folder: Path, results: Sequence[Calibration], experiment: Experiment
     for option in ("start", "seed", "population", "generations", "restarts"):
         if header.get(option) is not None:
             words += [f"--{option}", str(header[option])]
-    if header.get("polish") is False:
+    if header.get("polish") is False and header.get("objective", "likelihood") == "likelihood":
         words.append("--no-polish")
-    elif _held_out_left_out(results):
+    polished_beams = bool(result.estimates) and result.rms is not None
+    if header.get("held_out") is False or (
+        not header and polished_beams and not (result.held_out or result.held_out_note)
+    ):
         words.append("--no-held-out")
-    return shlex.join([*words, "--out", str(folder)])
+    return tuple(words)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names as an option takes them (`calibration.cli.names_in`)."""
+    line = io.StringIO()
+    csv.writer(line, lineterminator="").writerow(names)
+    return line.getvalue()
 
 
 def _header(folder: Path, result: Calibration) -> dict[str, Any]:
@@ -70,11 +107,6 @@ def _header(folder: Path, result: Calibration) -> dict[str, Any]:
         with lines.open(encoding="utf-8") as file:
             return dict(json.loads(file.readline()))
     return {}
-
-
-def _held_out_left_out(results: Sequence[Calibration]) -> bool:
-    polished = [r for r in results if r.estimates and r.rms is not None]
-    return bool(polished) and not any(r.held_out or r.held_out_note for r in polished)
 
 
 Rows = list[list[Cell]]
@@ -218,7 +250,7 @@ def write_page(folder: Path, results: Sequence[Calibration], experiment: Experim
         raise ValueError("expected at least one calibration to report")
     materials = dict.fromkeys(r.material for r in results)
     sections = [section([r for r in results if r.material == m], experiment) for m in materials]
-    text = render(sections, results, experiment, command(folder, results, experiment))
+    text = render(sections, results, experiment, "\n".join(commands(folder, results, experiment)))
     _pictures(folder / "pictures", sections)
     return write_whole(folder / "report.html", text)
 
@@ -226,7 +258,7 @@ def write_page(folder: Path, results: Sequence[Calibration], experiment: Experim
 def render(
     sections: Sequence[Section], results: Sequence[Calibration], experiment: Experiment, repeat: str
 ) -> str:
-    """The page as HTML; repeat: the command that makes it again."""
+    """The page as HTML; repeat: the commands that make it again."""
     return template(PAGE).render(
         experiment=experiment,
         sections=sections,

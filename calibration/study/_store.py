@@ -18,7 +18,7 @@ from calibration.parameters import part_entry
 from calibration.study.calibration import Calibration
 from tisim.parts import decode
 
-_NOT_COMPARED = {"rig_file"}  # a path: "rig" is the content
+_NOT_COMPARED = {"rig_file", "start"}  # paths: "rig" and "card" are the contents
 # of fits that can stand in one table
 _ALIKE = ("format", "data", "trials", "objective", "rig")
 _ANEW = "--overwrite starts anew, --out writes elsewhere"

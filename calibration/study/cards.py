@@ -2,13 +2,14 @@
 
 A law that has no usable fit is filled in from the best law's moduli, and the card's provenance says so.
 Parts that were fitted beside the best law (`tisim.parts`) stand under the keys `viscosity`, `softening` and
-`fibres`; moduli are then long-time ones.
+`fibres`; moduli are then long-time ones. Constants of a law that was fitted without them, or beside others,
+are not taken: they are those of another material.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,12 @@ def best(results: Sequence[Calibration]) -> Calibration | None:
     """
     found = _chosen_among(results)
     scale = misfit_scale(results)
-    return min(found, key=lambda r: r.chi2 / scale + 2.0 * r.constants) if found else None
+    return _least(found, scale) if found else None
+
+
+def _least(found: Sequence[Calibration], scale: float) -> Calibration:
+    """The fit with the lowest Akaike value."""
+    return min(found, key=lambda r: r.chi2 / scale + 2.0 * r.constants)
 
 
 def misfit_scale(results: Sequence[Calibration]) -> float:
@@ -65,14 +71,9 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
     if chosen is None:
         raise InputError(f"material {results[0].material}: expected a converged fit of at least one law")
     belief = experiment.materials[chosen.material]
-    by_law: dict[str, Calibration] = {}
-    for r in results:
-        settled = not r.unsettled or r is chosen
-        if usable(r) and settled and (r.law not in by_law or r.label == r.law):
-            by_law[r.law] = r
+    by_law = _taken(results, chosen)
     parameters: dict[str, dict[str, Any]] = {}
     filled = []
-    fitted = {r.law for r in results if r.parameters}
     for name in laws.names():
         if name in by_law:
             parameters[name] = _plain(by_law[name].parameters)
@@ -85,7 +86,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "material": chosen.material,
         "mixture": f"softener ratio {ratio:g}" if ratio is not None else chosen.material,
         "derived": False,
-        "provenance": _provenance(results, chosen, filled, fitted, experiment),
+        "provenance": _provenance(results, chosen, by_law, filled, experiment),
         "fitted_to": fitted_to(experiment, chosen.material, objective=chosen.objective),
         "uncertainty": {
             "shear_modulus_low": low,
@@ -99,6 +100,25 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "laws": parameters,
         **_parts(chosen),
     }
+
+
+def _taken(results: Sequence[Calibration], chosen: Calibration) -> dict[str, Calibration]:
+    """The fit of each law that a card can have beside the chosen one: the chosen one of its own law, of
+    another law the best with the same parts."""
+    by_law: dict[str, list[Calibration]] = {chosen.law: [chosen]}
+    for r in results:
+        if r.law != chosen.law and _settled(r, chosen) and _same_parts(r, chosen):
+            by_law.setdefault(r.law, []).append(r)
+    scale = misfit_scale(results)
+    return {law: _least(found, scale) for law, found in by_law.items()}
+
+
+def _settled(r: Calibration, chosen: Calibration) -> bool:
+    return usable(r) and (not r.unsettled or r is chosen)
+
+
+def _same_parts(r: Calibration, chosen: Calibration) -> bool:
+    return (r.parts, r.held) == (chosen.parts, chosen.held)
 
 
 def fitted_to(experiment: Experiment, material: str, *, objective: str = "likelihood") -> dict[str, Any]:
@@ -157,8 +177,8 @@ def _covariance(chosen: Calibration) -> dict[str, Any]:
 def _provenance(
     results: Sequence[Calibration],
     chosen: Calibration,
+    by_law: Mapping[str, Calibration],
     filled: Sequence[str],
-    fitted: Collection[str],
     experiment: Experiment,
 ) -> str:
     lines = [
@@ -180,18 +200,30 @@ def _provenance(
         lines.append(f"Held beside {chosen.law}, as another card states them: {', '.join(chosen.held)}.")
     if chosen.note:
         lines.append(f"Note: {chosen.note}.")
+    not_taken: dict[str, list[str]] = {}
+    for r in results:
+        if r.parameters and r is not by_law.get(r.law):
+            not_taken.setdefault(_why_not(r, chosen), []).append(r.label)
+    lines += [f"Fitted but not taken ({why}): {', '.join(names)}." for why, names in not_taken.items()]
+    fitted = {r.law for r in results if r.parameters}
     for why, names in (
         ("Not fitted", [n for n in filled if n not in fitted]),
-        (
-            "Fitted but not taken (not converged, or a constant at a bound)",
-            [n for n in filled if n in fitted],
-        ),
+        ("No fit taken", [n for n in filled if n in fitted]),
     ):
         if names:
             lines.append(f"{why}, moduli taken from {chosen.label}: {', '.join(names)}.")
     if experiment.materials[chosen.material].density is None:
         lines.append("Density not stated by the lab: 1000 kg/m3 assumed.")
     return "\n".join(lines)
+
+
+def _why_not(r: Calibration, chosen: Calibration) -> str:
+    """Why a fit's constants are not on the card."""
+    if not _settled(r, chosen):
+        return "not converged, or a constant at a bound"
+    if not _same_parts(r, chosen):
+        return f"beside other parts than those of {chosen.label}"
+    return "another fit of its law is better"
 
 
 def _why(r: Calibration) -> str:

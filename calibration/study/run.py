@@ -36,7 +36,7 @@ from tisim.parallel.extensions import digest_of_code, is_own
 log = logging.getLogger(__name__)
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 9
+FORMAT = 10
 
 
 @dataclass(frozen=True, kw_only=True)

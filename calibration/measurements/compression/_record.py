@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.errors import InputError
 from calibration.experiment.model import CouponMode
 from calibration.measurements.homogeneous._record import Record
 from calibration.measurements.homogeneous.kinematics import goes_into_compression, goes_into_tension
@@ -34,8 +35,21 @@ def up_to(last: float, mode: CouponMode, stretch: Array) -> NDArray[np.bool_]:
 
 
 def compared(record: Record, last: float) -> Record:
-    """Record of compression up to a strain; other records unchanged."""
-    return record.only(up_to(last, record.mode, record.stretch)) if is_compressed(record) else record
+    """Record of compression up to a strain; other records unchanged.
+
+    InputError for a record that lies beyond it as a whole.
+    """
+    if not is_compressed(record):
+        return record
+    kept = up_to(last, record.mode, record.stretch)
+    if not kept.any():
+        low, high = record.stretch.min(), record.stretch.max()
+        raise InputError(
+            f"trial {record.name}: record: expected some points with a stretch of {1.0 - last:g} or more"
+            f" (compression is compared up to a strain of {last:g}), got {low:.3g} to {high:.3g}; does the"
+            " column stretch hold strain?"
+        )
+    return record.only(kept)
 
 
 def pushed(record: Record) -> Record:

@@ -264,6 +264,17 @@ def check_pushed(records: Sequence[Record]) -> None:
             raise InputError(f"trial {r.name}: record: expected a force above 0 (pushing) at its deepest")
 
 
+def _own_sd(trial: PokeTrial, force: Array, count: Array) -> Array:
+    """Standard deviation of the means of the forces of a phase [N], shape (k,).
+
+    Unstated, it is that of the scatter of the whole record, and at least a fraction of its largest force for
+    any number of averaged samples, as in homogeneous tests: a load cell errs by a fraction of its range.
+    """
+    if trial.force_sd is not None:
+        return np.asarray(trial.force_sd / np.sqrt(count))
+    return unstated_sd(trial.record.time, trial.record.force, force, count)
+
+
 def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: bool) -> Record:
     raw = trial.record
     phases = with_holds(trial, phases_of(trial)) if courses else phases_of(trial)
@@ -278,11 +289,6 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
     unloading = [p for p in phases if p.direction < 0.0]
     if unloading:
         unloaded[unloading[0].points.start :] = 1.0
-    own = (
-        np.full(depth.size, trial.force_sd)
-        if trial.force_sd is not None
-        else unstated_sd(raw.time, raw.force, raw.force)
-    )
     across = None if raw.force_vector is None else raw.force_vector @ geometry.across.T
     columns: dict[str, list[Array]] = {name: [] for name in (*_ARRAYS, "across")}
     for n, p in enumerate(phases):
@@ -295,12 +301,13 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
             total = np.add.reduceat(x[points], first, axis=0)
             return np.asarray(total / count.reshape(-1, *([1] * (x.ndim - 1))))
 
+        force = mean(raw.force)
         for name, value in (
             ("time", mean(raw.time)),
             ("depth", mean(depth)),
-            ("force", mean(raw.force)),
+            ("force", force),
             ("count", count),
-            ("own_sd", mean(own) / np.sqrt(count)),
+            ("own_sd", _own_sd(trial, force, count)),
             ("phase", np.full(count.size, float(n))),
             ("direction", np.full(count.size, p.direction)),
             ("peak", mean(peak)),

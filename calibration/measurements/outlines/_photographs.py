@@ -34,6 +34,7 @@ class TracedPhotograph:
     ----------
     trial : trial of the beam.
     beam : index of the trial among those of the model.
+    name : unique (`names_of`).
     time : time since its release [s].
     outline : traced outline of k points, without those next to clamps.
     basis : orthonormal basis of polynomials along each edge and of decays from each clamp, shape (k, m).
@@ -44,16 +45,13 @@ class TracedPhotograph:
 
     trial: BeamTrial
     beam: int
+    name: str
     time: float
     outline: TracedOutline
     basis: Array
     corners: Array
     covariance: Array
     rows: slice
-
-    @property
-    def name(self) -> str:
-        return f"{self.trial.id} at {self.time:g} s"
 
     @property
     def material(self) -> str:
@@ -118,14 +116,23 @@ def away_from_clamps(outline: TracedOutline, trial: BeamTrial, *, zone: float = 
     return replace(outline, upper=upper, lower=lower)
 
 
+def names_of(trial: BeamTrial) -> list[str]:
+    """Unique name of each traced photograph of a trial: several of one instant have a number.
+
+    Under one name the nuisances of one would hide those of another.
+    """
+    names = [f"{trial.id} at {c.time:g} s" for c in trial.captures if c.outline is not None]
+    return [n if names.count(n) == 1 else f"{n} ({names[: k + 1].count(n)})" for k, n in enumerate(names)]
+
+
 def photographs_of(trials: Sequence[BeamTrial]) -> list[TracedPhotograph]:
     """All traced photographs. InputError if an outline has too few points away from the clamps."""
     found: list[TracedPhotograph] = []
     first = 0
     for i, t in enumerate(trials):
-        for c in t.captures:
-            if c.outline is None:
-                continue
+        traced_captures = [c for c in t.captures if c.outline is not None]
+        for c, name in zip(traced_captures, names_of(t), strict=True):
+            assert c.outline is not None
             traced = away_from_clamps(c.outline, t)
             corners = _corners(traced, t)
             basis = np.linalg.qr(np.column_stack([smooth_basis(traced), corners]))[0]
@@ -135,6 +142,7 @@ def photographs_of(trials: Sequence[BeamTrial]) -> list[TracedPhotograph]:
                 TracedPhotograph(
                     trial=t,
                     beam=i,
+                    name=name,
                     time=c.time,
                     outline=traced,
                     basis=basis,

@@ -18,6 +18,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment, MaterialBelief
 from calibration.inference import OfMaterial
 from calibration.measurements._contribution import Contribution, FitContext
+from calibration.measurements.outlines._photographs import names_of
 from calibration.measurements.outlines.fidelity import Fidelity, beam_scene
 from calibration.shape import body_mesh, centreline, sweep
 from tisim import Beam, Material, Result, simulate
@@ -151,12 +152,10 @@ def measured_bodies(trial: BeamTrial, *, index: int = 0) -> list[MeasuredBody]:
     InputError, with the trial's name, if an outline has no mid line.
     """
     found = []
-    for c in trial.captures:
-        if c.outline is None:
-            continue
-        name = f"{trial.id} at {c.time:g} s"
+    outlines = [c.outline for c in trial.captures if c.outline is not None]
+    for name, outline in zip(names_of(trial), outlines, strict=True):
         try:
-            line = centreline(c.outline, supports=trial.supports, free_length=trial.free_length)
+            line = centreline(outline, supports=trial.supports, free_length=trial.free_length)
             found.append(MeasuredBody(name, index, sweep(line, trial.section)))
         except InputError as error:
             raise InputError(f"trial {name}: {error}") from error

@@ -179,3 +179,19 @@ def test_a_dataset_gets_the_material_that_the_diagnosis_had(
     made = material_of(load_card("S0", tmp_path / "cards"))
     assert (made.law, made.density) == (scene.material.law, pytest.approx(scene.material.density))
     assert dict(made.parameters) == pytest.approx(dict(scene.material.parameters), rel=1e-4)
+
+
+def test_cards_of_an_earlier_diagnosis_of_other_materials_are_removed(tmp_path: Path) -> None:
+    """A fit's card stays, whose provenance names calibration.diagnose as what to do next."""
+    cards = tmp_path / "cards"
+    (earlier, *_) = write_cards(cards, diagnosis({STIFFENING: 0.5}), bench(tmp_path / "bench"))
+    other = earlier.rename(cards / "other.yaml")
+    fitted = {
+        **content(other),
+        "material": "kept",
+        "provenance": "Lack of fit: python -m calibration.diagnose",
+    }
+    (cards / "kept.yaml").write_text(yaml.safe_dump(fitted), encoding="utf-8")
+    (cards / "damaged.yaml").write_text("laws: [", encoding="utf-8")
+    write_cards(cards, diagnosis({STIFFENING: 0.5}), bench(tmp_path / "again"))
+    assert sorted(p.name for p in cards.iterdir()) == ["S0.yaml", "S1.yaml", "damaged.yaml", "kept.yaml"]

@@ -82,6 +82,13 @@ def test_beyond_half_of_the_height_nothing_is_compared() -> None:
     assert (low, high) == pytest.approx((0.5, 1.0), abs=0.01)
 
 
+def test_a_record_wholly_beyond_half_of_the_height_is_refused() -> None:
+    """Strain in place of stretch: numpy's words on an empty array reached the user."""
+    deep = pressed("deep", sliding, strain=np.linspace(0.55, 0.66, 20))
+    with pytest.raises(InputError, match=r"trial deep: record: expected some points with a stretch of 0\.5"):
+        press_model(experiment(deep, pressed("good", sliding)))
+
+
 def test_amplitude_zero_is_the_baseline() -> None:
     model = press_model(both(sliding, strain=ramps(2)))
     u = model.start()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from typing import Any
 
@@ -141,6 +142,29 @@ def test_without_a_force_sd_the_scatter_speaks() -> None:
     assert record.estimated
     last = record.own_sd[-1] * np.sqrt(record.count[-1]) / force(record.depth[-1:])[0]
     assert last == pytest.approx(0.03, rel=0.4)
+
+
+def test_averaging_does_not_take_an_unstated_force_error_below_its_floor() -> None:
+    """A load cell errs by a fraction of its range, however many of its samples are averaged."""
+    depth = np.linspace(0.0, 2e-3, 1000)
+    smooth = 5.0 * (depth / 2e-3) ** 1.3
+    record, *_ = records_of([made.trial(depth, smooth, force_sd=None)])
+    assert record.count.min() >= 20.0
+    assert record.own_sd == pytest.approx(np.full(record.points, 0.005 * 5.0))
+    stated, *_ = records_of([made.trial(depth, smooth, force_sd=0.1)])
+    assert stated.own_sd == pytest.approx(0.1 / np.sqrt(stated.count))
+
+
+def test_the_memory_of_a_long_record_grows_with_its_rows() -> None:
+    """Its scatter grows with the force, so that a smooth curve is taken; of all rows it took n^2 numbers."""
+    rows = 3000
+    depth = np.linspace(1e-5, 2e-3, rows)
+    force = 5.0 * (depth / 2e-3) ** 1.3 * (1.0 + 0.05 * np.random.default_rng(3).standard_normal(rows))
+    tracemalloc.start()
+    records_of([made.trial(depth, force, force_sd=None)])
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < rows**2 * 8 / 2
 
 
 def test_records_that_say_nothing_are_refused() -> None:

@@ -17,7 +17,7 @@ from _folders import coupon_entry, write_experiment
 import calibration
 from calibration.errors import InputError, OptionError
 from calibration.progress import FitProgress, Progress
-from calibration.results import DiagnosisResult, Fits, Reconstruction
+from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
 
 
 def strip(folder: Path, *, shear_kPa: float = 30.0) -> Path:
@@ -186,6 +186,32 @@ def test_a_diagnosis_prints_itself(folder: Path) -> None:
     assert "creep, all, ratio, 0.25 ± 0.01" in repr(result)
     assert "&lt;creeps&gt;" in result._repr_html_()
     assert "&lt;slowly&gt;" in result._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("page", "kind", "file"),
+    [
+        ("calibration.diagnosis.report.write_report", "diagnosis", "diagnosis.json"),
+        ("calibration.prediction.page.write_page", "prediction", "prediction.json"),
+    ],
+)
+def test_a_folder_that_was_written_in_part_is_not_complete(
+    page: str, kind: str, file: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An earlier result's file stood beside the page of a later one that was stopped."""
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError("no space is left")
+
+    monkeypatch.setattr(page, full)
+    (tmp_path / file).write_text("{}", encoding="utf-8")
+    results = {
+        "diagnosis": DiagnosisResult(None, calibration.read_experiment(folder), None),  # type: ignore[arg-type]
+        "prediction": PredictionResult(None),  # type: ignore[arg-type]
+    }
+    with pytest.raises(OSError, match="no space"):
+        results[kind].write(tmp_path)  # type: ignore[attr-defined]
+    assert not (tmp_path / file).exists()
 
 
 def test_a_reconstruction_prints_itself(folder: Path, tmp_path: Path) -> None:

@@ -106,6 +106,20 @@ def test_each_specimen_of_a_file_has_its_own_size(tmp_path: Path) -> None:
         trial(tmp_path / "both", both, rest_length_mm=LENGTH)
 
 
+def test_a_headers_number_is_read_as_those_of_the_table(tmp_path: Path) -> None:
+    """An area of 1,256 mm2 was read as 1.256, a thousandth, and a length of 1,050.0 mm not at all."""
+    head = 'Specimen properties : Area,"1,256",mm^2\nSpecimen properties : Length,"1,050.0",mm\n'
+    rows = raw(1256.0).splitlines()[2:]
+    long = "".join(f"{t},{float(x) * 1050.0 / LENGTH:.9g},{f}\n" for t, x, f in (r.split(",") for r in rows))
+    units = "Time,Extension,Load\n(s),(mm),(N)\n"
+    found = trial(tmp_path / "point", f"{head}{units}{long}")
+    np.testing.assert_allclose(found.stretch, STRETCH, rtol=1e-6)
+    np.testing.assert_allclose(found.stress, NOMINAL, rtol=1e-6, atol=1e-3)
+    whole = units + "".join(f"{k},{k},{10 * k}\n" for k in range(1, 9))
+    with pytest.raises(InputError, match=r"'1,256' may be either: state decimals"):
+        trial(tmp_path / "either", head + whole, rest_length_mm=50.0)
+
+
 def test_a_line_of_text_within_raw_data_is_refused(tmp_path: Path) -> None:
     lines = raw(AREA).splitlines()
     text = "\n".join([f"Specimen properties : Length,{LENGTH:g},mm", *lines[:8], "Ramp 2", *lines[8:]]) + "\n"

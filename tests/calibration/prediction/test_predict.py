@@ -298,6 +298,10 @@ def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) 
         ({"law": "ogden"}, "key law: expected one of neo-hookean, got ogden"),
         ({"viscosty": None}, "key viscosty: Extra inputs are not permitted"),
         ({"material": "S9"}, "expected a card of S0, found S9"),
+        (
+            {"effects": [{"effect": "relaxation", "parameters": {}, "becomes": "viscosity"}]},
+            "key effects.0.parameters: Dictionary should have at least 1 item",
+        ),
     ],
 )
 def test_bad_cards_are_one_sentence(
@@ -315,6 +319,8 @@ def test_bad_cards_are_one_sentence(
         (["--calibrate", "held", "--predict", "he*"], "expected trials that are not fitted to, got held"),
         (["--calibrate", "held", "--predict", "fast"], "fast: no trial has that id: expected some of slow,"),
         (["--calibrate", "held", "--predict", "age=3"], "expected ids of trials, or material=..."),
+        (["--calibrate", "held", "--predict", ""], "--predict: expected ids of trials, got none"),
+        (["--calibrate", "", "--predict", "slow"], "--calibrate: expected ids of trials, got none"),
         (["--calibrate", "held", "--predict", "slow", "--law", "jelly"], "--law jelly"),
         (
             ["--calibrate", "held", "--predict", "slow", "--specimen-scatter", "0.1"],

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from report_cases import Page, beam_folder, calibration, coupon_folder, estimate, failed
 
+from calibration.cli import names_in
 from calibration.experiment import read
 from calibration.measurements.objective import ModelObjective
 from calibration.report import write_page as write_report
+from calibration.report.page import commands
 from calibration.study import HeldOut
 
 
@@ -109,3 +114,38 @@ def test_without_results(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="at least one calibration"):
         write_report(tmp_path, [], read(coupon_folder(tmp_path / "data")))
     assert not (tmp_path / "report.html").exists()
+
+
+def test_commands_of_a_page_name_materials_with_a_comma(tmp_path: Path) -> None:
+    folder = coupon_folder(tmp_path / "data")
+    text = (folder / "experiment.yaml").read_text(encoding="utf-8")
+    content = yaml.safe_load(text.replace("material: A", "material: Eco 30, batch 2"))
+    content["materials"]["Eco 30, batch 2"] = content["materials"].pop("A")
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    (line,) = commands(tmp_path, [calibration(material="Eco 30, batch 2")], read(folder))
+    words = shlex.split(line)
+    assert names_in(words[words.index("--material") + 1]) == ["Eco 30, batch 2"]
+
+
+def test_fits_of_several_runs_have_a_command_each(tmp_path: Path) -> None:
+    """Of all fits in one folder the options of the first were printed."""
+    timed = replace(calibration(), label="neo-hookean+prony-1", parts=("prony:1",))
+    two = replace(calibration("ogden"), label="ogden-2")
+    fits = [timed, calibration("ogden"), two, calibration("mooney-rivlin"), calibration()]
+    (tmp_path / "fits").mkdir()
+    for r in fits:
+        header = {"seed": 5 if r.law == "mooney-rivlin" else 1, "held_out": True}
+        path = tmp_path / "fits" / f"{r.material}-{r.label}.json"
+        path.write_text(json.dumps({"header": header}), encoding="utf-8")
+    found = commands(tmp_path, fits, read(coupon_folder(tmp_path / "data")))
+    start = f"python -m calibration.fit {tmp_path / 'data'} --model"
+    end = f"--out {tmp_path}"
+    assert found == [
+        f"{start} neo-hookean --material A --time prony:1 --seed 1 {end}",
+        f"{start} ogden,neo-hookean --material A --seed 1 {end}",
+        f"{start} ogden --material A --terms 2 --seed 1 {end}",
+        f"{start} mooney-rivlin --material A --seed 5 {end}",
+    ]
+    assert commands(tmp_path, [calibration(), two], read(tmp_path / "data")) == [
+        f"{start} neo-hookean,ogden --material A --terms 2 --seed 1 {end}"
+    ]

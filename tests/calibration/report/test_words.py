@@ -7,10 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import yaml
 from report_cases import beam_folder, calibration, estimate, failed
 
 from calibration.cli import law_table
-from calibration.experiment import read
+from calibration.experiment import BeamTrial, read
+from calibration.measurements.outlines._photographs import photographs_of
 from calibration.pages import significant, with_sd
 from calibration.report._compare import compare, far_nuisances
 from calibration.report._draw_parameters import _shear
@@ -147,6 +149,23 @@ def test_nuisances_beyond_two_sd(tmp_path: Path) -> None:
         ("density of S1", "-11 kg/m³"),
         ("mesh of hanging", ""),
     ]
+
+
+def test_nuisances_of_two_photographs_of_one_instant_are_told_apart(tmp_path: Path) -> None:
+    """Under one name those of the second hid those of the first, in the result and in its lack of fit."""
+    folder = beam_folder(tmp_path / "data")
+    content = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))
+    hanging = next(t for t in content["trials"] if t["id"] == "hanging")
+    again = {**hanging["captures"][0], "registration_sd": {"shift_mm": 0.2, "roll_deg": 0.15, "scale": 0.003}}
+    hanging["captures"] += [again, {**again, "time_s": 90.0}]
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    experiment = read(folder)
+    beam = next(t for t in experiment.trials if isinstance(t, BeamTrial) and t.id == "hanging")
+    names = [p.name for p in photographs_of([beam])]
+    assert names == ["hanging at 60 s (1)", "hanging at 60 s (2)", "hanging at 90 s"]
+    moved = {f"shift x of {name}": 2.5 for name in names}
+    found = far_nuisances(calibration(material="S1", nuisances=moved), experiment)
+    assert [m.amount for m in found] == ["+0.25 mm", "+0.5 mm", "+0.5 mm"]
 
 
 def test_the_interval_of_a_modulus_is_that_of_its_constants() -> None:

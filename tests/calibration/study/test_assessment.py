@@ -155,7 +155,8 @@ def test_a_constant_at_a_bound_gives_way_to_a_settled_law(tmp_path: Path) -> Non
     provenance = made["provenance"]
     _, _, not_fitted = provenance.partition("Not fitted")
     assert "ogden" not in not_fitted.splitlines()[0]
-    assert "Fitted but not taken (not converged, or a constant at a bound), moduli taken from" in provenance
+    assert "Fitted but not taken (not converged, or a constant at a bound): ogden." in provenance
+    assert "No fit taken, moduli taken from neo-hookean: ogden." in provenance
 
 
 def test_a_constant_that_is_held_takes_no_degree_of_freedom() -> None:

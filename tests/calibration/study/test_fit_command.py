@@ -219,12 +219,40 @@ def test_a_second_run_into_a_folder_keeps_the_laws_of_the_first(tmp_path: Path) 
     assert load_card("S0", out / "cards").law == "ogden"
 
 
+def test_a_card_has_the_law_of_the_fit_whose_viscosity_it_has(tmp_path: Path) -> None:
+    """An elastic fit of the same law, by an earlier run, is 20 % stiffer than the long-time modulus."""
+    tau, fraction = 20.0, 0.6
+    t = np.concatenate([np.linspace(0.1, 2.0, 20), np.linspace(5.0, 100.0, 20)])
+    stretch = 1.0 + 0.25 * np.minimum(t, 2.0)
+    elastic = 30.0 * (stretch - stretch**-2)
+    # the ramp is short beside the relaxation: as if stretched at its middle
+    stress = elastic * (1.0 + fraction * np.exp(-np.maximum(t - 1.0, 0.0) / tau))
+    noise = 0.3 * np.random.default_rng(1).standard_normal(len(t))
+    table = {"time_s": t, "stretch": stretch, "nominal_stress_kPa": stress + noise}
+    pull = coupon_entry("pull", "a.csv", stress_sd_kPa=0.3)
+    experiment = write_experiment(tmp_path / "coupons", [pull], tables={"a.csv": table})
+    out = tmp_path / "out"
+    both = ["--model", "neo-hookean", "--out", str(out), "--workers", "1"]
+    fit(str(experiment), *both)
+    done = fit(str(experiment), *both, "--time", "prony:1")
+    assert "fitted by an earlier run: S0 neo-hookean" in " ".join(done.output.split())
+    names = ("S0-neo-hookean", "S0-neo-hookean+prony-1")
+    alone, timed = (result(tmp_path, name)["parameters"]["mu"] for name in names)  # type: ignore[index]
+    assert alone > 1.1 * timed
+    card = yaml.safe_load((out / "cards" / "S0.yaml").read_text())
+    assert "viscosity" in card
+    assert card["laws"]["neo-hookean"]["mu"] == pytest.approx(timed, rel=1e-5)
+    said = "Fitted but not taken (beside other parts than those of neo-hookean+prony-1): neo-hookean."
+    assert said in " ".join(card["provenance"].split())
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--model", "yeoh"], "--model yeoh"),
         (["--model", ","], "at least one law"),
         (["--material", "S7"], "--material S7"),
+        (["--material", ""], "--material: expected some of S0, got none"),
     ],
 )
 def test_bad_wishes_end_in_one_sentence(
@@ -234,6 +262,29 @@ def test_bad_wishes_end_in_one_sentence(
     assert done.exit_code == 2
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "expected traced photographs of beams of S0, nothing else shows K/G"),
+        (
+            ["--objective", "dice"],
+            "expected --objective likelihood, with dice K/G is held",
+        ),
+    ],
+)
+def test_a_free_bulk_ratio_that_nothing_shows_is_refused(
+    tmp_path: Path, arguments: list[str], words: str
+) -> None:
+    """It was held, without a word."""
+    stretch = np.linspace(1.05, 1.5, 8)
+    table = {"stretch": stretch, "nominal_stress_kPa": 30.0 * (stretch - stretch**-2)}
+    data = write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table})
+    done = fit(str(data), "--free-bulk-ratio", "--out", str(tmp_path / "out"), *arguments)
+    assert done.exit_code == 2
+    assert done.stderr.strip() == f"error: --free-bulk-ratio: {words}"
     assert not (tmp_path / "out").exists()
 
 

@@ -177,6 +177,11 @@ def test_an_option_that_is_left_out_now_is_another_fit(tmp_path: Path) -> None:
     moved.append(generation(0))
     again = FitStore(tmp_path, "S1-neo-hookean", HEADER | {"rig": "abc", "rig_file": "copy/rig.yaml"})
     assert len(again.history()) == 1
+    begun = HEADER | {"card": {"viscosity": {"kind": "prony", "fractions": [0.3], "times_s": [2.0]}}}
+    FitStore(tmp_path, "S2-neo-hookean", begun | {"start": "/a/S2.yaml"}).append(generation(0))
+    assert len(FitStore(tmp_path, "S2-neo-hookean", begun | {"start": "/b/S2.yaml"}).history()) == 1
+    with pytest.raises(InputError, match="made with another card;"):
+        FitStore(tmp_path, "S2-neo-hookean", HEADER | {"card": {}, "start": "/a/S2.yaml"}).history()
 
 
 LAW = """
