@@ -18,7 +18,7 @@ from calibration.measurements._records import strokes
 Array = NDArray[np.float64]
 
 TURN = 0.02  # least reversal at a turning point, as a fraction of the record's range of depth
-NOISE = 6.5  # the same, in standard deviations of the depth
+NOISE = 6.5  # the same, in standard deviations of the depth; more for long records (`_by_noise`)
 STAGE = 2e-3  # fraction of the largest depth below which a motion is the stage's own, stated or not
 # samples by which a boundary may be moved, and samples on either side that are used for this
 MOVED, WINDOW = 6, 14
@@ -26,6 +26,7 @@ ENDS, NEAR, CALM = 7, 0.5, 5  # samples at a stroke's ends, distance (in toleran
 # Increase of the squared deviations of the depth, in sd^2, that justifies a hold: it has three parameters
 # (two ends and a depth), chosen among many alternatives.
 MORE = 15.0
+SAMPLES = 500  # of a record with noise, or up to twice as many: averages of its own
 REST = 0.15  # least duration of a hold, as a fraction of the time of the stroke's motion
 
 HIGHEST = 6  # highest polynomial degree of a phase's depth in time
@@ -56,10 +57,23 @@ class Phase:
 
 
 def phases_of(trial: PokeTrial) -> list[Phase]:
-    """Phases of a trial in the order of the record."""
-    depth, time = trial.record.depth, trial.record.time
+    """Phases of a trial in the order of the record.
+
+    They are found in averages of successive samples where a record with noise has many: in the few samples
+    around a corner it would not move by more than its noise, and each possible corner costs all samples.
+    """
+    size = trial.record.depth.size
+    each = max(1, size // SAMPLES) if trial.depth_sd > 0.0 else 1
+    first = np.arange(0, size, each)
+    count = np.diff(first, append=size)
+    depth, time = (np.add.reduceat(x, first) / count for x in (trial.record.depth, trial.record.time))
+    found = _phases(time, depth, trial.depth_sd / float(np.sqrt(each)))
+    return [replace(p, points=slice(each * p.points.start, min(each * p.points.stop, size))) for p in found]
+
+
+def _phases(time: Array, depth: Array, sd: float) -> list[Phase]:
     stage = STAGE * float(np.abs(depth).max())
-    tolerance = max(TURN * float(np.ptp(depth)), NOISE * trial.depth_sd, stage)
+    tolerance = max(TURN * float(np.ptp(depth)), _by_noise(depth.size) * sd, stage)
     found: list[Phase] = []
     cycle = 0
     for s in strokes(depth, tolerance):
@@ -76,7 +90,15 @@ def phases_of(trial: PokeTrial) -> list[Phase]:
                 found[-1] = replace(found[-1], points=slice(found[-1].points.start, a + high))
             else:
                 found.append(Phase(points=slice(a + low, a + high), direction=moves, cycle=number))
-    return found if trial.depth_sd == 0.0 else _settled(found, time, depth, trial.depth_sd)
+    return found if sd == 0.0 else _settled(found, time, depth, sd)
+
+
+def _by_noise(samples: int) -> float:
+    """Reversal of a depth at rest that noise alone hardly makes, in standard deviations.
+
+    The range of n normal readings is below 2 sqrt(2 ln n) in nearly all records.
+    """
+    return max(NOISE, 2.0 * float(np.sqrt(2.0 * np.log(samples))))
 
 
 # -- depth without its noise --

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from poke_records import trial
 
+from calibration.measurements.indentation import _phases
 from calibration.measurements.indentation._phases import phases_of
 
 SAMPLES, TOP = 45, 0.4e-3  # samples per stroke; maximum depth [m]
@@ -70,3 +73,26 @@ def test_a_record_of_few_samples_is_cut_too() -> None:
     assert found[0].points.start == 0
     assert found[-1].points.stop == time.size
     assert [p.points.start for p in found[1:]] == [p.points.stop for p in found[:-1]]
+
+
+@pytest.mark.parametrize("samples", [3001, 20_000])
+def test_many_noisy_samples_are_cut_as_few_are(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Noise turns a long record around more often, and hides a corner among its few nearest samples; each of
+    the possible corners costs all samples."""
+    work: list[int] = []
+    whole = _phases._bent_misfit
+
+    def counted(time: np.ndarray, *rest: Any) -> float:
+        work.append(time.size)
+        return whole(time, *rest)
+
+    monkeypatch.setattr(_phases, "_bent_misfit", counted)
+    time = np.linspace(0.0, 30.0, samples)
+    depth = np.interp(time, [0.0, 5.0, 25.0, 30.0], [0.0, TOP, TOP, 0.0])
+    noisy = depth + NOISE * np.random.default_rng(samples).standard_normal(samples)
+    found = phases_of(trial("p", time, noisy, 1e3 * depth, depth_sd=NOISE))
+    assert [p.label for p in found] == ["loading 1", "hold 1", "unloading 1"]
+    assert (found[0].points.start, found[-1].points.stop) == (0, samples)
+    assert [p.points.start for p in found[1:]] == [p.points.stop for p in found[:-1]]
+    assert [time[p.points.start] for p in found[1:]] == pytest.approx([5.0, 25.0], abs=0.3)
+    assert sum(work) < 1e6
