@@ -122,7 +122,7 @@ def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) ->
         save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
     now = MODELS["invariant-gnn"].version
     with pytest.raises(
-        InputError, match=f"weights of version 1 of model invariant-gnn, this is version {now}"
+        InputError, match=f"of version 1 of model invariant-gnn, this is version {now}"
     ):
         load_run(tmp_path / "run")
     with pytest.raises(InputError, match="train again"):
