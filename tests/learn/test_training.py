@@ -121,9 +121,7 @@ def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) ->
         content = load_checkpoint(tmp_path / "run" / name)
         save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
     now = MODELS["invariant-gnn"].version
-    with pytest.raises(
-        InputError, match=f"of version 1 of model invariant-gnn, this is version {now}"
-    ):
+    with pytest.raises(InputError, match=f"of version 1 of model invariant-gnn, this is version {now}"):
         load_run(tmp_path / "run")
     with pytest.raises(InputError, match="train again"):
         _train(folder, TINY, tmp_path / "run", resume=True)
