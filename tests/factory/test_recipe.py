@@ -16,14 +16,19 @@ from hypothesis import strategies as st
 
 from factory._errors import InputError
 from factory._input import read_yaml
-from factory.plan import make_plan
+from factory.plan import Plan, make_plan
 from factory.recipe import Recipe, load_recipe, recipe_names
 from tests.factory.conftest import TINY
 from tisim.bodies import BoxInclusion, CylinderInclusion, SphereInclusion
 
 
-def test_the_papers_recipe() -> None:
-    plan = make_plan(load_recipe("paper"), "ogden")
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    """The paper's 1,320 pokes, planned once."""
+    return make_plan(load_recipe("paper"), "ogden")
+
+
+def test_the_papers_recipe(plan: Plan) -> None:
     assert len(plan.pokes) == 11 * 3 * 40 == 1320
     assert {type(inclusion) for inclusion in plan.inclusions} == {
         BoxInclusion,
@@ -54,8 +59,7 @@ def test_quick_is_of_the_same_kind() -> None:
     assert (quick.block_mm, quick.rod, quick.friction) == (paper.block_mm, paper.rod, paper.friction)
 
 
-def test_shared_sites_are_shared_and_own_ones_are_not() -> None:
-    plan = make_plan(load_recipe("paper"), "ogden")
+def test_shared_sites_are_shared_and_own_ones_are_not(plan: Plan) -> None:
     for shape in range(11):
         where = [
             [
@@ -72,8 +76,8 @@ def test_shared_sites_are_shared_and_own_ones_are_not() -> None:
     assert len({poke.seed for poke in plan.pokes}) == 11 * 80
 
 
-def test_draws_stay_in_their_bounds_and_fill_them() -> None:
-    pokes = make_plan(load_recipe("paper"), "ogden").pokes
+def test_draws_stay_in_their_bounds_and_fill_them(plan: Plan) -> None:
+    pokes = plan.pokes
     sites = np.array([poke.scene.site for poke in pokes])
     assert np.abs(sites).max() <= 0.030
     assert np.abs(sites).max() > 0.0295
@@ -94,8 +98,7 @@ def test_an_indenter_that_leaves_through_a_side_is_refused() -> None:
     assert make_plan(near.model_copy(update={"protocol": upright}), "ogden").pokes
 
 
-def test_inclusions_stand_on_the_base_below_enough_silicone() -> None:
-    plan = make_plan(load_recipe("paper"), "ogden")
+def test_inclusions_stand_on_the_base_below_enough_silicone(plan: Plan) -> None:
     line = np.linspace(-0.05, 0.05, 101)
     for inclusion, shape in zip(plan.inclusions, plan.recipe.shapes, strict=True):
         grid = np.stack(np.meshgrid(line, line, np.arange(0.0001, 0.032, 0.0005)), axis=-1)
@@ -106,14 +109,15 @@ def test_inclusions_stand_on_the_base_below_enough_silicone() -> None:
         assert np.abs(held[:, :2]).max() <= 0.040
 
 
-def test_a_plan_is_a_function_of_the_recipe() -> None:
-    one, two = (make_plan(load_recipe("paper"), "ogden") for _ in range(2))
-    assert one.pokes == two.pokes
-    assert one.uuid == two.uuid
-    assert make_plan(load_recipe("paper"), "neo-hookean").uuid != one.uuid
-    other = load_recipe("paper").model_copy(update={"seed": 1})
-    assert make_plan(other, "ogden").uuid != one.uuid
-    assert make_plan(other, "ogden").pokes[0].scene.site != one.pokes[0].scene.site
+def test_a_plan_is_a_function_of_the_recipe(plan: Plan) -> None:
+    again = make_plan(load_recipe("paper"), "ogden")
+    assert again.pokes == plan.pokes
+    assert again.uuid == plan.uuid
+    quick = load_recipe("quick")
+    one, law = make_plan(quick, "ogden"), make_plan(quick, "neo-hookean")
+    other = make_plan(quick.model_copy(update={"seed": 1}), "ogden")
+    assert len({one.uuid, law.uuid, other.uuid, plan.uuid}) == 4
+    assert other.pokes[0].scene.site != one.pokes[0].scene.site
 
 
 def _tiny() -> dict[str, Any]:
