@@ -76,6 +76,12 @@ def test_a_simulated_poke_is_an_equilibrium(simulated: Path) -> None:
     assert max(frame.free for frame in found) < tolerance
 
 
+def _change(monkeypatch: pytest.MonkeyPatch, change: Change) -> None:
+    """Let a dataset's pokes be read with a change."""
+    whole = Dataset.poke
+    monkeypatch.setattr(Dataset, "poke", lambda data, index: change(whole(data, index)))
+
+
 def _lifted(poke: PokeData) -> PokeData:
     """Raise a corner of the top by 0.01 mm in the second frame."""
     surface = poke.surface.copy()
@@ -99,8 +105,7 @@ def _lifted(poke: PokeData) -> PokeData:
 def test_what_is_no_equilibrium_is_a_fault(
     simulated: Path, monkeypatch: pytest.MonkeyPatch, change: Change, frames: list[int], fault: str
 ) -> None:
-    whole = Dataset.poke
-    monkeypatch.setattr(Dataset, "poke", lambda data, index: change(whole(data, index)))
+    _change(monkeypatch, change)
     found = list(check_poke(open_dataset(simulated), 0))
     assert [f.frame for f in found if any(fault in text for text in f.faults(5e-4))] == frames
 
@@ -109,15 +114,13 @@ def test_a_surface_that_holds_no_equilibrium_is_counted(
     simulated: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Frames before it are checked; it may be wrong, so that the command does not end with 0."""
-    whole = Dataset.poke
 
-    def folded(data: Dataset, index: int) -> PokeData:
-        poke = whole(data, index)
+    def folded(poke: PokeData) -> PokeData:
         surface = poke.surface.copy()
         surface[1, np.argmax(poke.surface_rest @ [1.0, 1.0, 10.0])] -= [0.0, 0.0, 0.02]
         return dataclasses.replace(poke, surface=surface)
 
-    monkeypatch.setattr(Dataset, "poke", folded)
+    _change(monkeypatch, folded)
     monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
     found = check_assembly(open_dataset(simulated), pokes=1, workers=1)
     assert (found.pokes, found.frames, found.faults, found.no_interior) == (1, 1, [], {0: 1})
@@ -130,10 +133,8 @@ def test_a_rod_that_has_been_retracted_presses_with_nothing(
     simulated: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The second frame at rest, as after an elastic retraction."""
-    whole = Dataset.poke
 
-    def released(data: Dataset, index: int) -> PokeData:
-        poke = whole(data, index)
+    def released(poke: PokeData) -> PokeData:
         surface, forces = poke.surface.copy(), {}
         surface[1] = poke.surface_rest
         for name in ("rod_force", "base_force"):
@@ -141,7 +142,7 @@ def test_a_rod_that_has_been_retracted_presses_with_nothing(
         tip = poke.rod_tip - [[0.0], [5e-3]] * poke.direction
         return dataclasses.replace(poke, surface=surface, rod_tip=tip, **forces)
 
-    monkeypatch.setattr(Dataset, "poke", released)
+    _change(monkeypatch, released)
     found = list(check_poke(open_dataset(simulated), 0))
     assert [frame.faults(5e-4) for frame in found] == [[], []]
 
