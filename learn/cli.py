@@ -287,8 +287,8 @@ EXPORT_EXAMPLES = """
 
   python -m learn.export runs/quick --out surrogate
 
-encoder.onnx: rigid (n, levels) -> code, vectors, clear: once an interior.
-poke.onnx: code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units.
+encoder.onnx: rigid (n, levels) -> code, vectors, clear, layers: once an interior.
+poke.onnx: these four, start, direction, depth, modulus -> displacement, force. SI units.
 For the paper's model, in double precision, poke.onnx alone: profile (n, levels), start, direction, depth.
 model.json: the points, the indenter, and the domain of validity (trained ranges).
 

@@ -1,8 +1,8 @@
 """A run as ONNX files, checked against torch.
 
-invariant-gnn: `encoder.onnx`, once per interior: rigid (n, levels) -> code, vectors, clear. `poke.onnx`:
-code, vectors, clear, start, direction, depth, modulus -> displacement, force. SI units. A model trained with
-time also takes `clock`: time since contact [s], the rod's speed and its speed of approach [m/s].
+invariant-gnn: `encoder.onnx`, once per interior: rigid (n, levels) -> code, vectors, clear, layers.
+`poke.onnx`: these four, start, direction, depth, modulus -> displacement, force. SI units. A model trained
+with time also takes `clock`: time since contact [s], the rod's speed and its speed of approach [m/s].
 
 cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It searches
 neighbours in each layer, and its output jumps where they change: in single precision the rounding of another
@@ -40,6 +40,7 @@ FILES = ("encoder.onnx", "poke.onnx", "model.json")  # of invariant-gnn
 TOLERANCE = 1e-5  # relative to the largest displacement of a poke, and to its force
 _CHECKED = 8  # pokes
 CLOCK = ["time_s", "rod_speed_m_per_s", "approach_speed_m_per_s"]  # in this order
+INTERIOR = ["code", "vectors", "clear", "layers"]  # of `Encoded`
 ROD = ["start", "direction", "depth", "modulus"]  # of invariant-gnn
 INPUTS = ["profile", "start", "direction", "depth"]  # of cegnn
 
@@ -52,11 +53,11 @@ class PokePart(nn.Module):
         self.model, self.scene, self.stencils = model, scene, stencils
 
     def forward(
-        self, code: Tensor, vectors: Tensor, clear: Tensor, start: Tensor, direction: Tensor, depth: Tensor,
-        modulus: Tensor, clock: Tensor | None = None,
+        self, code: Tensor, vectors: Tensor, clear: Tensor, layers: Tensor, start: Tensor, direction: Tensor,
+        depth: Tensor, modulus: Tensor, clock: Tensor | None = None,
     ) -> tuple[Tensor, Tensor]:  # fmt: skip
         scene = replace(self.scene, rigid_index=torch.zeros(1, dtype=torch.int64))
-        encoded = Encoded(scene, self.stencils, code, vectors, clear)
+        encoded = Encoded(scene, self.stencils, code, vectors, clear, layers)
         pokes = Pokes(
             geometry=torch.zeros(1, dtype=torch.int64),
             start=start[None],
@@ -76,9 +77,9 @@ class EncoderPart(nn.Module):
         super().__init__()
         self.model, self.scene, self.stencils = model, scene, stencils
 
-    def forward(self, rigid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    def forward(self, rigid: Tensor) -> tuple[Tensor, ...]:
         encoded = self.model.encode(replace(self.scene, rigid=rigid[None]), self.stencils)
-        return encoded.code, encoded.vectors, encoded.clear
+        return tuple(getattr(encoded, name) for name in INTERIOR)
 
 
 def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
@@ -101,13 +102,13 @@ def export(run: Run, scene: Scene, folder: Path) -> dict[str, Path]:
     files = {"encoder": folder / "encoder.onnx", "poke": folder / "poke.onnx"}
     write_graph(
         EncoderPart(model, one, stencils), (one.rigid[0],), files["encoder"],
-        ["rigid"], ["code", "vectors", "clear"],
+        ["rigid"], INTERIOR,
     )  # fmt: skip
     vector = torch.tensor([0.0, 0.0, -1.0], dtype=torch.float64)
     scalar = torch.tensor(5e-3, dtype=torch.float64)
     start = scene.points.mean(dim=0)
-    names = ["code", "vectors", "clear", *ROD]
-    inputs = [encoded.code, encoded.vectors, encoded.clear, start, vector, scalar, scalar * 2e6]
+    names = [*INTERIOR, *ROD]
+    inputs = [*(getattr(encoded, name) for name in INTERIOR), start, vector, scalar, scalar * 2e6]
     if model.takes_clock:
         names.append("clock")
         inputs.append(torch.tensor([1.0, 2e-3, 2e-3], dtype=torch.float64))
@@ -214,8 +215,7 @@ class OnnxBundle:
 
     def encode(self, rigid: Tensor) -> dict[str, Any]:
         """Encode an interior, `rigid` (n, levels)."""
-        code, vectors, clear = self._encoder.run(None, {"rigid": rigid.numpy()})
-        return {"code": code, "vectors": vectors, "clear": clear}
+        return dict(zip(INTERIOR, self._encoder.run(None, {"rigid": rigid.numpy()}), strict=True))
 
     def poke(self, encoded: dict[str, Any], pokes: Pokes, k: int) -> tuple[Any, Any]:
         """Displacement (n, 3) [m] and force [N] of the k-th poke."""

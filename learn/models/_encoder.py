@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 from torch import Tensor, nn
 
+from learn.models import _ahead
 from learn.models.scene import Scene
 
 RADII = (6.2e-3, 12.4e-3, 25e-3)  # [m], radii of the neighbourhoods
@@ -161,7 +162,8 @@ class Encoded:
     """Encoded scene of k inclusions under n points.
 
     `code` (n, k, c) is invariant, `vectors` (3, n, k, v) rotate with the scene, `clear` (n, k) is the
-    fraction of each column above the inclusion; `stencils` are the cloud's neighbourhoods at `RADII`.
+    fraction of each column above the inclusion, `layers` (n, k, LAYERS + 1) the rigid fraction of its layers;
+    `stencils` are the cloud's neighbourhoods at `RADII`.
     """
 
     scene: Scene
@@ -169,6 +171,7 @@ class Encoded:
     code: Tensor
     vectors: Tensor
     clear: Tensor
+    layers: Tensor
 
 
 def stencils_of(scene: Scene) -> tuple[Stencil, ...]:
@@ -212,7 +215,8 @@ class GeometryEncoder(nn.Module):
         code = self.second(_with_one(h), stencils, normals)
         thin = self.narrow(code)
         vectors = torch.cat([slopes(s, thin) for s in stencils[1:]], dim=3)
-        return Encoded(scene, stencils, code, vectors, clear[..., 0].T)
+        layers = _ahead.layers_of(scene.rigid)
+        return Encoded(scene, stencils, code, vectors, clear[..., 0].T, layers)
 
 
 def _to_height(rigid: Tensor, units: float) -> Tensor:

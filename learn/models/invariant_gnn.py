@@ -23,7 +23,7 @@ from torch.nn.functional import silu, softplus
 from learn.data.loaders import Batch
 from learn.data.statistics import Statistics
 from learn.errors import InputError
-from learn.models import _contact
+from learn.models import _ahead, _contact
 from learn.models._contact import Contact
 from learn.models._encoder import Encoded, GeometryEncoder, Stencil, means, slopes, stencils_of
 from learn.models._prior import Prior
@@ -35,8 +35,8 @@ N_CLOCK = 3  # invariants of a poke with time
 
 
 # version 1 lacked the indenter's surface; 2 weighted points equally, and had a modulus input without effect;
-# 3 did not see the inverse of the soft tissue's thickness
-@register_model("invariant-gnn", version=4)
+# 3 did not see the inverse of the soft tissue's thickness; 4 did not see what lies ahead of the indenter
+@register_model("invariant-gnn", version=5)
 class InvariantGnn(Model):
     """The surrogate.
 
@@ -72,8 +72,8 @@ class InvariantGnn(Model):
         code, turning = self.encoder.n_code, self.encoder.n_vectors
         self.look = nn.Linear(code, SEEN, bias=False)
         seen = 3 * SEEN
-        about = _contact.N_POKE + 3 * seen + _contact.N_COVER + (self.log_modulus is not None)
-        about += N_CLOCK if self.takes_clock else 0
+        about = _contact.N_POKE + 3 * seen + _contact.N_COVER + _ahead.N_AHEAD
+        about += (self.log_modulus is not None) + (N_CLOCK if self.takes_clock else 0)
         self.from_code = nn.Linear(code, hidden)
         self.from_poke = nn.Linear(about, hidden, bias=False)
         self.from_point = nn.Linear(_contact.N_POINT + seen + 2 * turning, hidden, bias=False)
@@ -119,7 +119,8 @@ class InvariantGnn(Model):
         vectors = encoded.vectors.index_select(2, inclusion)
         scalars, toward = contact.seen(self.look(encoded.code).index_select(1, inclusion))
         cover = _contact.of_cover(self._cover(encoded, contact, inclusion), contact.depth, contact.poke[:, 2])
-        known = [torch.stack(cover, dim=1), *self._of_modulus(pokes), *self._of_clock(pokes)]
+        ahead = self._ahead(encoded, contact, pokes, inclusion)
+        known = [torch.stack([*cover, *ahead], dim=1), *self._of_modulus(pokes), *self._of_clock(pokes)]
         about = torch.cat([contact.poke, scalars, *known], dim=1)
         unit = contact.unit.permute(2, 0, 1)[..., None]
         push = contact.push.T[:, None, :, None]
@@ -158,6 +159,19 @@ class InvariantGnn(Model):
         inverse = 1 / encoded.clear.clamp(min=_contact.LEAST_CLEAR).index_select(1, inclusion)
         return self.column(encoded.scene) / (contact.near[0] * inverse).sum(dim=0)
 
+    def _ahead(self, encoded: Encoded, contact: Contact, pokes: Pokes, inclusion: Tensor) -> list[Tensor]:
+        """Invariants of what lies ahead of the indenter along its push, each (b,)."""
+        scene = encoded.scene
+        blocked = _ahead.blocked(
+            contact.exact.r * scene.rod_radius,
+            scene.normals,
+            torch.log(scene.area),
+            encoded.layers.index_select(1, inclusion),
+            pokes.direction,
+            scene.height,
+        )
+        return _ahead.of_path(blocked, contact.depth, scene.rod_radius)
+
     def column(self, scene: Scene) -> float:
         """The unit of `Encoded.clear` in rod radii."""
         return (self.encoder.height or scene.height) / scene.rod_radius
@@ -181,8 +195,9 @@ class InvariantGnn(Model):
         return [torch.stack(parts, dim=1).float()]
 
 
-# version 3 had two rounds of messages, the first at two radii, and 8 vectors; 4 as invariant-gnn of version 3
-@register_model("invariant-gnn-small", version=5)
+# version 3 had two rounds of messages, the first at two radii, and 8 vectors; 4 and 5 are as invariant-gnn of
+# versions 3 and 4
+@register_model("invariant-gnn-small", version=6)
 def small(statistics: Statistics) -> InvariantGnn:
     """Half as wide, with one round of messages: faster, at a larger error."""
     return InvariantGnn(statistics, hidden=32, messages=8, directions=4, scales=((0,),), vectors=4)

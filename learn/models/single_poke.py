@@ -19,7 +19,7 @@ from torch import Tensor, nn
 from torch.nn.functional import silu
 
 from learn.errors import InputError
-from learn.models import _contact, _prior
+from learn.models import _ahead, _contact, _prior
 from learn.models._contact import RINGS, WIDTHS
 from learn.models._encoder import RADII, Encoded, Gathered, Sparse, Stencil
 from learn.models.invariant_gnn import InvariantGnn, _Messages
@@ -34,6 +34,7 @@ _EXP = [(21, 1), (22, 1), (25, 1), (26, 1)]
 _TANH = [(23, -1), (24, -1), (20, 1), (30, 1)]
 _UNDER = [(27, 1), (28, 1), (29, 1), (31, 1)]
 _OF_POKE = (6, 7)  # the same at all points
+_DIGITS = 6.0  # standard deviations beyond which a column has no weight in single precision
 
 
 class SinglePoke:
@@ -56,6 +57,7 @@ class SinglePoke:
         self._clear = encoded.clear[:, inclusion].double().numpy()
         self._per_clear = 1 / np.maximum(self._clear, _contact.LEAST_CLEAR)
         self._column = model.column(scene)
+        self._path = _Path(encoded, inclusion)
         vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
         self._vectors = np.ascontiguousarray(vectors.numpy())
         prior = model.prior.coefficients.numpy()  # (radial, factors, 3)
@@ -119,7 +121,8 @@ class SinglePoke:
         near /= near.sum(axis=1, keepdims=True)  # (w, n)
         here = self._normals @ near[0]
         log_deep = math.log(deep + _contact.SHALLOW)
-        about, toward = self._about(r, near, here, push, (deep, log_deep, modulus))
+        ahead = _ahead.of_path(self._path(r64, start, direction), np.float64(deep), self._radius, np)
+        about, toward = self._about(r, near, here, push, (deep, log_deep, modulus), ahead)
 
         unit, along, aside = self._fill(r, square, push, deep)
         k = self._own
@@ -160,17 +163,23 @@ class SinglePoke:
         return np.ascontiguousarray((u * np.float32(depth)).T), force
 
     def _about(
-        self, r: Floats, near: Floats, here: Floats, push: Floats, poke: tuple[float, float, float]
+        self,
+        r: Floats,
+        near: Floats,
+        here: Floats,
+        push: Floats,
+        poke: tuple[float, float, float],
+        ahead: list[float],
     ) -> tuple[Floats, Floats]:
         """Invariants of the poke, and first moments (3, c) of the code about the contact, as `Contact.seen`.
 
-        `poke`: depth over radius, its logarithm as in `Contact`, modulus [Pa].
+        `poke`: depth over radius, its logarithm as in `Contact`, modulus [Pa]; `ahead`: `_ahead.of_path`.
         """
         deep, log_deep, modulus = poke
         facing = float(here @ push)
         of_poke = np.array([deep / 4, log_deep, facing, facing * deep / 4], dtype=np.float32)
         cover = self._column / float(near[0] @ self._per_clear)
-        known = [_contact.of_cover(cover, deep, facing, np)]
+        known = [_contact.of_cover(cover, deep, facing, np), ahead]
         known += [] if self._log_modulus is None else [[math.log(modulus) - self._log_modulus]]
         means = near @ self._looked
         moments = ((self._scales * near[:, None] * r).reshape(-1, r.shape[1]) @ self._looked).reshape(
@@ -238,6 +247,51 @@ class SinglePoke:
         amounts = (self._prior @ radial).astype(np.float32)
         a = amounts[:3] + amounts[3:] * self._rows[4]
         return np.asarray(a[0] * self._normals + a[1] * unit + a[2] * push[:, None])
+
+
+class _Path:
+    """`_ahead.blocked` of one poke; a poke that only goes deeper has that of the last call."""
+
+    def __init__(self, encoded: Encoded, inclusion: int) -> None:
+        scene = encoded.scene
+        self._normals = np.ascontiguousarray(scene.normals.numpy().T)
+        self._log_area = torch.log(scene.area).numpy()
+        self._layers = np.ascontiguousarray(encoded.layers[:, inclusion].numpy())
+        self._height, self._radius = scene.height, scene.rod_radius
+        self._last: tuple[tuple[float, ...], Floats] | None = None
+
+    def __call__(self, r: Doubles, start: Doubles, push: Doubles) -> Floats:
+        """Fraction of the tissue about the axis that is rigid, (widths, samples); `r` in rod radii (3, n)."""
+        key = (*start, *push)
+        if self._last is None or self._last[0] != key:
+            self._last = key, self._blocked(self._radius * r, push)
+        return self._last[1]
+
+    def _blocked(self, offset: Doubles, push: Doubles) -> Floats:
+        way = _ahead.WAY
+        down, sink, along = (offset * self._normals).sum(axis=0), -(push @ self._normals), push @ offset
+        whole = (offset * offset).sum(axis=0)
+        # columns that are too far from the axis for any digit of the means
+        nearest = np.clip((along + sink * down) / np.maximum(1 - sink * sink, 1e-12), way[0], way[-1])
+        square, *ends = (
+            whole + at * (at - 2 * along) - (down + sink * at) ** 2 for at in (nearest, way[0], way[-1])
+        )
+        limit = max(end.min() for end in ends) + (_DIGITS * _ahead.WIDTHS[-1]) ** 2
+        few = np.flatnonzero(square <= limit)
+        down, sink, along, whole = (v[few, None] for v in (down, sink, along, whole))
+        z = down + sink * way
+        square = whole + way * (way - 2 * along) - z * z
+        place = np.clip(z * (_ahead.LAYERS / self._height) - 0.5, 0, _ahead.LAYERS)
+        low = np.minimum(place.astype(np.int64), _ahead.LAYERS - 1)
+        part, layers = (place - low).astype(np.float32), self._layers[few]
+        rows = np.arange(len(few))[:, None]
+        rigid = layers[rows, low] * (1 - part) + layers[rows, low + 1] * part
+        found = np.empty((len(_ahead.WIDTHS), len(way)), dtype=np.float32)
+        for k, width in enumerate(_ahead.WIDTHS):
+            log = self._log_area[few, None] - square / (2 * width**2)
+            weight = np.exp((log - log.max(axis=0)).astype(np.float32))
+            found[k] = (weight * rigid).sum(axis=0) / weight.sum(axis=0)
+        return np.maximum.accumulate(found, axis=1)
 
 
 def _column(*values: float) -> Floats:

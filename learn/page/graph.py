@@ -7,7 +7,7 @@ Inputs, SI units, of one poke over one interior:
 
 - poke (6,), float64: site x, y [m]; angle between push and vertical, heading of its horizontal part [rad];
   depth [m]; shear modulus [Pa];
-- base, looked, vectors, clear, soft, about: the interior (`interior_inputs`).
+- base, looked, vectors, clear, layers, soft, about: the interior (`interior_inputs`).
 
 Outputs: displacement (n, 3) [m], force () [N], tip (3,) [m] at first contact, direction (3,) of the push.
 If the domain is known: values (q,) and beyond (q + 1,), in the order of `QUANTITIES` with the kind of
@@ -36,7 +36,7 @@ from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
 from learn.validity import QUANTITIES, RELATIVE_SLACK, Domain, interior_of, unit_of
 
-INPUTS = ["poke", "base", "looked", "vectors", "clear", "soft", "about"]
+INPUTS = ["poke", "base", "looked", "vectors", "clear", "layers", "soft", "about"]
 _FAR = 1e30  # limit of a range on a side that is not checked
 _LEAST_DEPTH = 1e-6  # [m]: keeps the logarithm finite for a rod that does not touch
 
@@ -62,9 +62,9 @@ def interior_inputs(
 
     Returns
     -------
-    base, looked, vectors, clear: see `learn.page.network.interior_codes`; soft (n,): thickness of the soft
-    tissue above the inclusion [m]; about (4,): width and height of the inclusion [mm], 1 for a kind that was
-    not trained, size of the inclusion [mm] (`learn.validity.Interior`).
+    base, looked, vectors, clear, layers: see `learn.page.network.interior_codes`; soft (n,): thickness of the
+    soft tissue above the inclusion [m]; about (4,): width and height of the inclusion [mm], 1 for a kind that
+    was not trained, size of the inclusion [mm] (`learn.validity.Interior`).
     """
     rigid = torch.from_numpy(profile == 255).float()
     with torch.no_grad():
@@ -123,6 +123,7 @@ class PagePart(nn.Module):
         looked: Tensor,
         vectors: Tensor,
         clear: Tensor,
+        layers: Tensor,
         soft: Tensor,
         about: Tensor,
     ) -> tuple[Tensor, ...]:
@@ -132,7 +133,7 @@ class PagePart(nn.Module):
         # as in `learn.scene_file.first_touch`
         above = self.edge * (1 - cosine) + (self.radius - self.edge) * sine
         tip = torch.stack([x, y, self.top]) - push * (above / cosine)
-        u, force = self.network(base, looked, vectors, clear, tip, push, depth, modulus)
+        u, force = self.network(base, looked, vectors, clear, layers, tip, push, depth, modulus)
         found = [u, force, tip, push]
         distance = torch.zeros_like(depth)
         if self.ranges is not None:

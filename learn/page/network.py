@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import silu, softplus
 
-from learn.models import InvariantGnn, Scene, _contact, _prior
+from learn.models import InvariantGnn, Scene, _ahead, _contact, _prior
 from learn.models._contact import RINGS, WIDTHS, Place
 from learn.models._encoder import Encoded, Gathered, Stencil, gathered
 from learn.models.invariant_gnn import _Messages
@@ -32,7 +32,7 @@ def interior_codes(model: InvariantGnn, encoded: Encoded) -> dict[str, Tensor]:
 
     Returns
     -------
-    base (n, hidden), looked (n, SEEN), vectors (3, v, n), clear (n,) in float64.
+    base (n, hidden), looked (n, SEEN), vectors (3, v, n), clear (n,) in float64, layers (n, LAYERS + 1).
     """
     code = encoded.code[:, 0]
     return {
@@ -40,6 +40,7 @@ def interior_codes(model: InvariantGnn, encoded: Encoded) -> dict[str, Tensor]:
         "looked": model.look(code),
         "vectors": encoded.vectors[:, :, 0].transpose(1, 2).contiguous(),
         "clear": encoded.clear[:, 0].double(),
+        "layers": encoded.layers[:, 0].contiguous(),
     }
 
 
@@ -50,7 +51,7 @@ class RowNetwork(nn.Module):
         super().__init__()
         self.model = model
         self.radius, self.edge = scene.rod_radius, scene.rod_edge / scene.rod_radius
-        self.column = model.column(scene)
+        self.column, self.height = model.column(scene), scene.height
         self.points = (scene.points / self.radius).T.contiguous()
         self.normals = scene.normals.T.contiguous()
         self.log_area = torch.log(scene.area)
@@ -72,8 +73,8 @@ class RowNetwork(nn.Module):
         self.place = {k: place for place, k in enumerate(used)}
 
     def forward(
-        self, base: Tensor, looked: Tensor, vectors: Tensor, clear: Tensor, start: Tensor, push64: Tensor,
-        depth: Tensor, modulus: Tensor,
+        self, base: Tensor, looked: Tensor, vectors: Tensor, clear: Tensor, layers: Tensor, start: Tensor,
+        push64: Tensor, depth: Tensor, modulus: Tensor,
     ) -> tuple[Tensor, Tensor]:  # fmt: skip
         """Displacement (n, 3) [m] and force [N]; arguments of the interior from `interior_codes`."""
         model = self.model
@@ -97,6 +98,9 @@ class RowNetwork(nn.Module):
         inverse = 1 / clear.clamp(min=_contact.LEAST_CLEAR)
         cover = self.column / (near64[0] * inverse).sum()
         about.append(torch.stack(_contact.of_cover(cover, deep64, facing)))
+        offset, push = (self.radius * r64).T[:, None], push64[None]
+        blocked = _ahead.blocked(offset, self.normals.T, self.log_area, layers[:, None], push, self.height)
+        about.append(torch.stack(_ahead.of_path(blocked[:, 0].double(), deep64, self.radius)))
         if model.log_modulus is not None:
             about.append((torch.log(modulus) - model.log_modulus)[None])
         of_poke = torch.cat(about)[None].float()

@@ -1,0 +1,97 @@
+"""What lies ahead of the indenter: how much of its way along the push is rigid, and how near that is.
+
+The cover below the contact does not say what an inclined indenter meets, nor whether one that goes down near
+a rim meets the inclusion or passes it. `blocked` takes samples along the push, each a mean over the columns
+near the axis; `of_path` makes invariants of them, in torch or in NumPy.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+WIDTHS = (1.5e-3, 3e-3)  # m; standard deviations of the means over columns near the axis
+STEP = 1e-3  # m between samples along the push
+WAY = (np.arange(30) + 0.5) * STEP  # m from first contact to each sample
+BEYOND = (0.0, 1e-3, 2e-3, 4e-3, 8e-3)  # m beyond the indenter's tip, where the invariants look
+N_AHEAD = len(WIDTHS) * (3 + len(BEYOND))
+LAYERS = 32  # of a column; the stored levels are averaged over them
+
+# The mean of 1 / s over the axis's neighbourhood, s the way to what is rigid: if a fraction B_k of it is
+# blocked at sample k, the sum of (B_k - B_(k-1)) / s_k with s_k between the two samples. What is free counts
+# as blocked right after the last.
+_BETWEEN = np.append(STEP / 4, WAY + STEP / 2)
+_FALL = 1 / _BETWEEN[:-1] - 1 / _BETWEEN[1:]
+_END = 1 / _BETWEEN[-1]
+
+
+def layers_of(rigid: Tensor) -> Tensor:
+    """Rigid fraction of each layer of each column, (n, k, LAYERS + 1), from masks (k, n, levels).
+
+    The last layer is the base, which is rigid.
+    """
+    k, n, levels = rigid.shape
+    mean = rigid.reshape(k, n, LAYERS, levels // LAYERS).mean(dim=3)
+    return torch.cat([mean, torch.ones_like(mean[..., :1])], dim=2).permute(1, 0, 2).contiguous()
+
+
+def blocked(
+    offset: Tensor, normals: Tensor, log_area: Tensor, layers: Tensor, push: Tensor, height: float
+) -> Tensor:
+    """Fraction of the tissue about the axis that is rigid at or before each sample of the way.
+
+    Parameters
+    ----------
+    offset : from first contact to each point [m], shape (n, b, 3), float64.
+    normals : of the points, shape (n, 3), float64.
+    log_area : logarithms of the points' areas, shape (n,), float64.
+    layers : rigid fractions under the points, shape (n, b, LAYERS + 1).
+    push : unit directions, shape (b, 3), float64.
+    height : of the columns [m].
+
+    Returns
+    -------
+    Tensor, shape (len(WIDTHS), b, len(WAY)), float32
+    """
+    way = torch.as_tensor(WAY, device=offset.device)
+    down = (offset * normals[:, None]).sum(dim=2)[..., None]  # depth of first contact below each point
+    sink = -(normals[:, None] * push).sum(dim=2)[..., None]  # depth over way
+    along = (offset * push).sum(dim=2)[..., None]
+    z = down + sink * way  # (n, b, s)
+    square = offset.square().sum(dim=2)[..., None] - 2 * along * way + way.square() - z.square()
+    place = (z * (LAYERS / height) - 0.5).clamp(0, LAYERS)
+    low = place.floor().clamp(max=LAYERS - 1)
+    part, low = (place - low).float(), low.long()
+    rigid = torch.gather(layers, 2, low) * (1 - part) + torch.gather(layers, 2, low + 1) * part
+    found = []
+    for width in WIDTHS:
+        weight = torch.softmax((log_area[:, None, None] - square / (2 * width**2)).float(), dim=0)
+        found.append((weight * rigid).sum(dim=0))
+    rigid = torch.stack(found)
+    before = torch.ones(len(WAY), len(WAY), dtype=torch.bool, device=rigid.device).tril()
+    return (rigid[:, :, None] * before).amax(dim=3)  # a running maximum; ONNX has no operation for it
+
+
+def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[Any]:
+    """Invariants of what lies ahead, lengths in indenter radii, N_AHEAD arrays shaped as `depth`.
+
+    Parameters
+    ----------
+    blocked : shape (len(WIDTHS), ..., len(WAY))
+    depth : travel since first contact in indenter radii, shape (...).
+    radius : of the indenter [m].
+    """
+    way, fall = (xp.asarray(v, dtype=blocked.dtype) for v in (WAY, _FALL))
+    tip = depth * radius
+    found = []
+    for b in blocked:
+        clear = 1 / (((b * fall).sum(-1) + _END) * radius)  # harmonic mean, as of the cover
+        found += [xp.log(clear / 4), 1 / clear, depth / clear]
+        for beyond in BEYOND:
+            at = xp.clip((tip + beyond)[..., None], WAY[0], WAY[-1])
+            hat = xp.clip(1 - abs(way - at) / STEP, 0.0, None)  # interpolates between two samples
+            found.append((b * hat).sum(-1))
+    return found
