@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.model import OutlineModel
@@ -97,7 +98,7 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
                 normal=f.normal,
                 raw=s.raw[part],
                 left=s.left[part],
-                along=_along(traced),
+                along=traced[0, 0] + arc_length(traced),
             )
             for traced, f, part in zip(
                 (p.outline.upper, p.outline.lower), s.feet, (slice(n), slice(n, None)), strict=True
@@ -109,11 +110,6 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
         simulated[p.trial.id] = (s.simulated[0], s.simulated[1])
     view = turned(seen, title=f"Measured outlines over the beams of {chosen.label}")
     return Drawn(photographs=tuple(photographs), simulated=simulated, view=view)
-
-
-def _along(edge: Array) -> Array:
-    steps = np.linalg.norm(np.diff(edge, axis=0), axis=1)
-    return edge[0, 0] + np.concatenate([[0.0], np.cumsum(steps)])
 
 
 _SIDES = (("upper edge", COLOURS[0]), ("lower edge", COLOURS[1]))
