@@ -32,6 +32,7 @@ from calibration.study.measurements import Measurements, ObjectiveName, OnSetup,
 from calibration.study.parts import CardParts
 from tisim import laws
 from tisim.parallel.extensions import digest_of_code, is_own
+from tisim.parallel.threads import ONE_THREAD
 
 log = logging.getLogger(__name__)
 
@@ -286,8 +287,8 @@ def _run_spread(
 ) -> None:
     """Fits in processes of their own."""
     # each fit alone on one core: BLAS threads that spin while they wait cost a factor
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+    for name, count in ONE_THREAD.items():
+        os.environ.setdefault(name, count)
     pool = ProcessPoolExecutor(
         max_workers=min(workers, len(waiting)),
         mp_context=multiprocessing.get_context("spawn"),
