@@ -141,6 +141,11 @@ class RectangleSection(Strict):
         return self
 
 
+def metres(point_mm: Position) -> tuple[float, float, float]:
+    """A point or vector of a file [mm] in SI."""
+    return (point_mm[0] * 1e-3, point_mm[1] * 1e-3, point_mm[2] * 1e-3)
+
+
 def below(key: str, value: float, limit_key: str, limit: float) -> None:
     """Refuses a standard deviation as large as what it belongs to."""
     if value >= limit:
