@@ -171,8 +171,7 @@ class FitScreen:
 
 def _one_line(r: Calibration) -> str:
     modulus = f", G {r.shear_modulus / 1e3:.3f} kPa" if r.shear_modulus == r.shear_modulus else ""
-    why = "; ".join(r.lacking) if r.status == "lack of fit" else r.message
-    return f"{r.status}{modulus}" + (f"; {why}" if why else "")
+    return f"{r.status}{modulus}" + (f"; {r.reason}" if r.reason else "")
 
 
 def law_table(results: Sequence[Calibration]) -> Table:
