@@ -15,7 +15,7 @@ from calibration.experiment._fields import Name, Strict, below, say
 from calibration.experiment._files import MAIN, Files
 from calibration.experiment._poke import PokeEntry, read_poke
 from calibration.experiment._yaml import parse
-from calibration.experiment.model import Experiment, MaterialBelief, Trial
+from calibration.experiment.model import Experiment, MaterialBelief, Trial, specimen_of
 
 # kg/m3: outside of it a density is one in g/cm3 or a slip
 _LIGHTEST, _HEAVIEST = 10.0, 30_000.0
@@ -114,7 +114,7 @@ def _told_apart(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
     """The trials; specimens of two materials that have one name get their material's before it."""
     materials: dict[str, set[str]] = {}
     for t in trials:
-        materials.setdefault(t.specimen or t.material, set()).add(t.material)
+        materials.setdefault(specimen_of(t), set()).add(t.material)
     shared = {name for name, owners in materials.items() if len(owners) > 1}
     return tuple(
         replace(t, specimen=f"{t.material} {t.specimen}") if t.specimen in shared else t for t in trials

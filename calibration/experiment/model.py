@@ -309,6 +309,11 @@ class CouponTrial:
 Trial = BeamTrial | PokeTrial | CouponTrial
 
 
+def specimen_of(trial: Trial) -> str:
+    """Name of a trial's specimen: that of its material, if the trial names none."""
+    return trial.specimen or trial.material
+
+
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Experiment:
     """A folder of measurements, read and checked.
