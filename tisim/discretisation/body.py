@@ -90,6 +90,12 @@ class Discretisation:
         np.add.at(volume, mesh.elements.ravel(), shares.ravel())
         return volume
 
+    def free_components(self, values: Array) -> Array:
+        """Nodal values (n, 3) at the free nodes, with held components zero, shape (n_free, 3)."""
+        found: Array = values[self.pattern.free]
+        found[self.held] = 0.0
+        return found
+
     def hold(self, blocks: Array) -> None:
         """Replace the rows and columns of the held components in blocks (nb, 3, 3) by a scaled identity."""
         if not self.held.any():
@@ -259,6 +265,14 @@ class DiscretisedBody:
                 x, du, self.discretisation.mesh.elements, ref.gradients, self._weights, self._kb, out
             )
         return out
+
+    def out_of_balance(self, force: Array) -> Array:
+        """Out-of-balance force of internal forces (n, 3) at the free nodes [N], shape (n_free, 3)."""
+        return self.discretisation.free_components(force - self.dead_load)
+
+    def load_norm(self) -> float:
+        """Norm of the dead load at the free nodes [N]."""
+        return float(np.linalg.norm(self.dead_load[self.discretisation.pattern.free]))
 
     def energy(self, x: Array) -> tuple[float, float]:
         """Potential energy including that of the dead load [J], and the smallest det F."""

@@ -99,7 +99,7 @@ def _result(
     for axis in body.discretisation.mesh.symmetry:
         support["xyz".index(axis)] = 0.0
     done = outcome.status is Status.CONVERGED
-    load = system.load_norm()
+    load = system.body.load_norm()
     residual = system.residual_norm(outcome.x) / load if load > 0.0 else outcome.residual
     return Result(
         scene=scene,
