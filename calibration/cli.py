@@ -25,7 +25,7 @@ from tisim import laws
 from tisim.parallel.termination import terminable
 
 if TYPE_CHECKING:
-    from calibration.progress import FitProgress
+    from calibration.progress import FitProgress, OnProgress, Progress
     from calibration.study import Calibration
 
 # Generations that a search takes as a rule, for the time left only.
@@ -121,6 +121,26 @@ def plain_ends(stopped: str = "Stopped: nothing was written.") -> Iterator[None]
 def _end(sentence: str, code: int) -> NoReturn:
     typer.echo(" ".join(sentence.split()), err=True)
     raise typer.Exit(code)
+
+
+def check_folder(folder: Path, result: str, overwrite: bool) -> None:
+    """Refuse a folder that holds a `result` ("diagnosis" for diagnosis.json), unless it may be replaced."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out {folder}: expected a folder, found a file")
+    if (folder / f"{result}.json").exists() and not overwrite:
+        raise InputError(f"--out {folder}: holds a {result} already; add --overwrite to replace it")
+
+
+def elapsed(console: Console) -> OnProgress:
+    """An `on_progress` callback that prints each message after the time since now."""
+    begun = time.monotonic()
+
+    def show(progress: Progress) -> None:
+        console.print(
+            f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {escape(str(progress))}", highlight=False
+        )
+
+    return show
 
 
 class FitScreen:
