@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim import Block, Circle, Rectangle
+from tisim import Beam, Block, Circle, Material, Rectangle
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -312,6 +312,20 @@ Trial = BeamTrial | PokeTrial | CouponTrial
 def specimen_of(trial: Trial) -> str:
     """Name of a trial's specimen: that of its material, if the trial names none."""
     return trial.specimen or trial.material
+
+
+def beam_as_stated(trial: BeamTrial, material: Material, **settings: Any) -> Beam:
+    """Scene of a beam's trial as the lab states it; `settings` are further arguments of `tisim.Beam`."""
+    return Beam(
+        material=material,
+        length=trial.free_length,
+        section=trial.section,
+        supports=trial.supports,
+        grip_length=trial.grip_length,
+        gravity=trial.gravity,
+        tip_force=trial.tip_force,
+        **settings,
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
