@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil, floor, log10
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.turned import turned
-from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
+from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, round_magnification
 from calibration.study.calibration import Calibration
 from tisim.view import View
 
@@ -214,10 +214,4 @@ def _simulated(axes: Any, lines: tuple[Any, Any], width: float, colour: str, tex
 def _factor(photographs: list[DrawnPhotograph], size_mm: float) -> float:
     """A round magnification that makes the largest residual about a tenth of the picture."""
     largest = 1e3 * max(float(np.abs(e.left).max()) for p in photographs for e in p.edges)
-    if largest <= 0.0:
-        return 1.0
-    wanted = 0.08 * size_mm / largest
-    if wanted <= 1.0:
-        return 1.0
-    power = 10.0 ** floor(log10(wanted))
-    return max(m * power for m in (1, 2, 5) if m * power <= wanted)
+    return round_magnification(0.08 * size_mm / largest) if largest > 0.0 else 1.0
