@@ -96,6 +96,13 @@ class Discretisation:
         found[self.held] = 0.0
         return found
 
+    def support_force(self, force: Array) -> Array:
+        """Force of the supports on the whole body for nodal forces (n, 3) less the load [N], shape (3,)."""
+        support: Array = force[self.fixed].sum(axis=0) * self.multiplicity
+        for axis in self.mesh.symmetry:
+            support["xyz".index(axis)] = 0.0
+        return support
+
     def hold(self, blocks: Array) -> None:
         """Replace the rows and columns of the held components in blocks (nb, 3, 3) by a scaled identity."""
         if not self.held.any():
@@ -103,7 +110,7 @@ class Discretisation:
         p = self.pattern
         rows = np.repeat(np.arange(len(p.free)), np.diff(p.indptr))
         diagonal = p.indptr[:-1]
-        scale = np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean()
+        scale = np.abs(p.diagonal(blocks)).mean()
         partly: NDArray[np.bool_] = np.any(self.held, axis=1, keepdims=True)[:, 0]
         touched = np.flatnonzero(partly[rows] | partly[p.indices])
         keep = ~self.held[rows[touched]][:, :, None] & ~self.held[p.indices[touched]][:, None, :]

@@ -99,11 +99,8 @@ class Path:
 
     def keep(self) -> None:
         body = self.system.body
-        fixed = body.discretisation.fixed
         force, min_jacobian = body.internal_forces(self.outcome.x)
-        support = (force[fixed] - body.dead_load[fixed]).sum(axis=0) * body.discretisation.multiplicity
-        for axis in body.discretisation.mesh.symmetry:
-            support["xyz".index(axis)] = 0.0
+        support = body.discretisation.support_force(force - body.dead_load)
         self.frames.append(
             Frame(
                 self.time, self.value, self.outcome.x, support, body.dissipated(), min_jacobian,

@@ -142,7 +142,7 @@ class BeamSystem:
     def _rounding(self, x: Array) -> float:
         """Estimated residual norm from rounding of the positions [N], 2 to 3 times the measured one."""
         assert self._blocks is not None
-        diagonal = self._blocks[self.body.discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+        diagonal = self.body.discretisation.pattern.diagonal(self._blocks)
         return 0.5 * float(np.finfo(float).eps * np.linalg.norm(diagonal) * np.abs(x).max())
 
     def step(self, residual: Array, *, forcing: float) -> Array:  # noqa: ARG002 - the solve is exact
@@ -151,7 +151,7 @@ class BeamSystem:
         discretisation.hold(self._blocks)
         self.factored_at = self._linearised_at
         diagonal = discretisation.pattern.indptr[:-1]
-        scale = float(np.abs(self._blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
+        scale = float(np.abs(discretisation.pattern.diagonal(self._blocks)).mean())
         shift = 0.0
         for attempt in range(8):
             discretisation.solver.factorise(self._blocks)

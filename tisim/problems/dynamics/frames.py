@@ -43,10 +43,7 @@ class Frames:
 
     def keep(self, time: float, x: Array, dynamic: Array, min_jacobian: float, residual: float) -> None:
         """Append a state; dynamic (n, 3) [N]: internal, damping and inertia forces less the applied load."""
-        discretisation = self.body.discretisation
-        support = dynamic[discretisation.fixed].sum(axis=0) * discretisation.multiplicity
-        for axis in discretisation.mesh.symmetry:
-            support["xyz".index(axis)] = 0.0
+        support = self.body.discretisation.support_force(dynamic)
         self.time.append(time)
         self.positions.append(x.copy())
         self.support_force.append(support)

@@ -131,7 +131,7 @@ class ImplicitSystem:
         if self.min_jacobian <= 0.0:
             residual[:] = np.nan
         # short steps amplify the rounding of positions, which bounds the residual that can be reached
-        diagonal = self._blocks[discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+        diagonal = discretisation.pattern.diagonal(self._blocks)
         noise = ROUNDING * float(np.linalg.norm(diagonal * x[discretisation.pattern.free]))
         return residual, self.scale + noise / (SHARPER * s.tolerance)
 
