@@ -309,6 +309,11 @@ class CouponTrial:
 Trial = BeamTrial | PokeTrial | CouponTrial
 
 
+def kind_of(trial: Trial) -> str:
+    """Kind of a trial, as experiment.yaml names it: beam, poke, coupon."""
+    return type(trial).__name__.removesuffix("Trial").lower()
+
+
 def specimen_of(trial: Trial) -> str:
     """Name of a trial's specimen: that of its material, if the trial names none."""
     return trial.specimen or trial.material
@@ -355,8 +360,7 @@ class Experiment:
         """Number of trials by kind: beam, poke, coupon."""
         found: dict[str, int] = {}
         for trial in self.trials:
-            kind = type(trial).__name__.removesuffix("Trial").lower()
-            found[kind] = found.get(kind, 0) + 1
+            found[kind_of(trial)] = found.get(kind_of(trial), 0) + 1
         return found
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -370,8 +374,7 @@ class Experiment:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{escape(t.id)}</td><td>{type(t).__name__.removesuffix('Trial').lower()}</td>"
-            f"<td>{escape(t.material)}</td></tr>"
+            f"<tr><td>{escape(t.id)}</td><td>{kind_of(t)}</td><td>{escape(t.material)}</td></tr>"
             for t in self.trials
         )
         head = "<tr><th>trial</th><th>kind</th><th>material</th></tr>"
