@@ -25,7 +25,7 @@ from tisim import laws
 from tisim.parallel.termination import terminable
 
 if TYPE_CHECKING:
-    from calibration.progress import FitProgress
+    from calibration.progress import FitProgress, OnProgress, Progress
     from calibration.study import Calibration
 
 # Generations that a search takes as a rule, for the time left only.
@@ -123,6 +123,26 @@ def _end(sentence: str, code: int) -> NoReturn:
     raise typer.Exit(code)
 
 
+def check_folder(folder: Path, result: str, overwrite: bool) -> None:
+    """Refuse a folder that holds a `result` ("diagnosis" for diagnosis.json), unless it may be replaced."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out {folder}: expected a folder, found a file")
+    if (folder / f"{result}.json").exists() and not overwrite:
+        raise InputError(f"--out {folder}: holds a {result} already; add --overwrite to replace it")
+
+
+def elapsed(console: Console) -> OnProgress:
+    """An `on_progress` callback that prints each message after the time since now."""
+    begun = time.monotonic()
+
+    def show(progress: Progress) -> None:
+        console.print(
+            f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {escape(str(progress))}", highlight=False
+        )
+
+    return show
+
+
 class FitScreen:
     """A live table: fits done, generation and best cost of the running ones, time left."""
 
@@ -171,8 +191,7 @@ class FitScreen:
 
 def _one_line(r: Calibration) -> str:
     modulus = f", G {r.shear_modulus / 1e3:.3f} kPa" if r.shear_modulus == r.shear_modulus else ""
-    why = "; ".join(r.lacking) if r.status == "lack of fit" else r.message
-    return f"{r.status}{modulus}" + (f"; {why}" if why else "")
+    return f"{r.status}{modulus}" + (f"; {r.reason}" if r.reason else "")
 
 
 def law_table(results: Sequence[Calibration]) -> Table:

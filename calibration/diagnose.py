@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.markup import escape
 
-from calibration.cli import Measured, Seed, Version, Workers, command, names_in, plain_ends
-from calibration.errors import InputError
+from calibration.cli import (
+    Measured,
+    Seed,
+    Version,
+    Workers,
+    check_folder,
+    command,
+    elapsed,
+    names_in,
+    plain_ends,
+)
 
 if TYPE_CHECKING:
-    from calibration.progress import Progress
     from calibration.results import DiagnosisResult
 
 app = command()
@@ -85,14 +91,7 @@ def main(
 
         folder = out or Path("diagnoses") / experiment.resolve().name
         data = api.read_experiment(experiment, leave_out_rows=leave_out_rows)
-        _check_folder(folder, overwrite)
-        begun = time.monotonic()
-
-        def show(progress: Progress) -> None:
-            console.print(
-                f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {escape(str(progress))}", highlight=False
-            )
-
+        check_folder(folder, "diagnosis", overwrite)
         found = api.diagnose(
             data,
             domain=domain,
@@ -103,18 +102,11 @@ def main(
             noise=noise,
             seed=seed,
             workers=workers,
-            on_progress=show,
+            on_progress=elapsed(console),
         )
         report = found.write(folder)
         _show(found, report, console)
     raise typer.Exit(0 if found.baseline_converged else 1)
-
-
-def _check_folder(folder: Path, overwrite: bool) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out {folder}: expected a folder, found a file")
-    if (folder / "diagnosis.json").exists() and not overwrite:
-        raise InputError(f"--out {folder}: holds a diagnosis already; add --overwrite to replace it")
 
 
 def _show(found: DiagnosisResult, report: Path, console: Console) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,11 +11,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from calibration.cli import Seed, Version, Workers, command, names_in, plain_ends
+from calibration.cli import Seed, Version, Workers, check_folder, command, elapsed, names_in, plain_ends
 from calibration.errors import InputError
 
 if TYPE_CHECKING:
-    from calibration.progress import Progress
     from calibration.results import PredictionResult
 
 app = command()
@@ -91,17 +89,10 @@ def main(
     with plain_ends():
         cards, experiment = _paths(paths, calibrate)
         folder = out or Path("predictions") / experiment.resolve().name
-        _check_folder(folder, overwrite)
+        check_folder(folder, "prediction", overwrite)
         from calibration import api
 
         data = api.read_experiment(experiment)
-        begun = time.monotonic()
-
-        def show(progress: Progress) -> None:
-            console.print(
-                f"[dim]{time.monotonic() - begun:6.1f} s[/dim]  {escape(str(progress))}", highlight=False
-            )
-
         found = api.predict(
             data,
             cards,
@@ -114,7 +105,7 @@ def main(
             specimen_scatter=specimen_scatter,
             seed=seed,
             workers=workers,
-            on_progress=show,
+            on_progress=elapsed(console),
         )
         _show(found, found.write(folder), console)
 
@@ -125,13 +116,6 @@ def _paths(paths: list[Path], calibrate: str | None) -> tuple[Path | None, Path]
     if calibrate is not None and len(paths) != 1:
         raise InputError(f"--calibrate {calibrate}: expected EXPERIMENT alone, without cards")
     return (paths[0] if len(paths) == 2 else None), paths[-1]
-
-
-def _check_folder(folder: Path, overwrite: bool) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out {folder}: expected a folder, found a file")
-    if (folder / "prediction.json").exists() and not overwrite:
-        raise InputError(f"--out {folder}: holds a prediction already; add --overwrite to replace it")
 
 
 def _show(found: PredictionResult, report: Path, console: Console) -> None:

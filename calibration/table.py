@@ -102,9 +102,9 @@ def _materials(data: Experiment, folder: Path) -> list[str]:
     main = folder / "experiment.yaml"
     found = [m for m in data.materials if traced_beams(data, m)]
     if not found:
-        kinds = dict.fromkeys(type(t).__name__.removesuffix("Trial").lower() for t in data.trials)
         raise InputError(
-            f"{main}: expected at least one beam with an outline, found trials of kind {', '.join(kinds)}:"
+            f"{main}: expected at least one beam with an outline, found trials of kind"
+            f" {', '.join(data.counts)}:"
             " the paper's table compares the bodies of photographed beams; calibration.fit writes a report of"
             " every kind"
         )

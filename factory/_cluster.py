@@ -13,9 +13,10 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from factory._errors import InputError, one_line
-from factory._execution import ERROR_LENGTH, THREAD_VARIABLES, run_poke, sendable, worker_facts
+from factory._execution import ERROR_LENGTH, run_poke, sendable, worker_facts
 from factory._record import Outcome
 from factory.plan import PlannedPoke
+from tisim.parallel.threads import SAME_BYTES
 
 log = logging.getLogger(__name__)
 
@@ -57,7 +58,7 @@ def run_cluster(
     cluster: Any = None
     client: Any = None
     # before the workers start: numpy and MKL read these once
-    os.environ.update(THREAD_VARIABLES)
+    os.environ.update(SAME_BYTES)
     try:
         if address == "local":
             cluster = distributed.LocalCluster(

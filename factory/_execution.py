@@ -18,15 +18,6 @@ from tisim.parallel.extensions import Extension, adopt, needed
 SIMULATOR = "tisim:simulate"
 ERROR_LENGTH = 400
 
-# one core per poke; more threads would compete, and would change the order of sums
-THREAD_VARIABLES = {
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    # MKL may otherwise pick another path for another memory alignment, and the bytes would differ
-    "MKL_CBWR": "AUTO,STRICT",
-}
-
 Simulate = Callable[..., Sequence[Any]]
 
 

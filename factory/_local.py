@@ -19,10 +19,11 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 
 from factory._errors import InputError
-from factory._execution import THREAD_VARIABLES, load_simulator, run_poke, sendable
+from factory._execution import load_simulator, run_poke, sendable
 from factory._record import Outcome
 from factory.plan import PlannedPoke
 from tisim.parallel.extensions import Extension
+from tisim.parallel.threads import SAME_BYTES
 
 _ATTEMPTS = 2  # a poke whose worker died twice is recorded as failed
 
@@ -110,7 +111,7 @@ def _start(simulator: str, extensions: Sequence[Extension] = ()) -> _Worker:
     process = context.Process(
         target=_work, args=(theirs, simulator, os.getpid(), tuple(extensions)), daemon=True
     )
-    with _environment(THREAD_VARIABLES), _no_interrupts():
+    with _environment(SAME_BYTES), _no_interrupts():
         process.start()
     theirs.close()
     return _Worker(process=process, pipe=ours)

@@ -1,4 +1,4 @@
-"""Plan the pokes of a recipe: contact points, directions and inclusions are drawn from its seed."""
+"""Plan a dataset: the pokes of a recipe under one law, the solves they share, and the dataset's identity."""
 
 from __future__ import annotations
 
@@ -6,20 +6,16 @@ import hashlib
 import importlib.metadata
 import json
 import logging
-import math
 import uuid
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from factory._course import deepest, draw_course
+from factory._drawing import block_size, check_drawn, draw_scene, inclusion_of, seed_of
 from factory._effects import in_one_law
 from factory._errors import InputError
 from factory._parts import part_entries
-from factory._sampling import level_depths
 from factory._similar import one_solve
 from factory.materials import (
     Card,
@@ -30,19 +26,16 @@ from factory.materials import (
     material_of,
 )
 from factory.recipe import Recipe
-from tisim import Block, Inclusion, Material, Poke, parts
+from tisim import Inclusion, Material, Poke, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
-from tisim.problems import check_scene
-from tisim.problems.indentation.kind import CONTACT, ELEMENT, leaves
+from tisim.problems.indentation.kind import CONTACT, ELEMENT
 
 log = logging.getLogger(__name__)
 
 FORMAT = 1  # version of the store's format; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")
-_MM = 1e-3
-_DRAWS = 1000  # attempts to find a contact point above an inclusion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +135,7 @@ class Plan:
     @property
     def blocks(self) -> tuple[tuple[float, float, float], ...]:
         """Size of the block of each geometry (shape x material level) [m]."""
-        sizes = [_size(self.recipe, number) for number in range(len(self.recipe.shapes))]
+        sizes = [block_size(self.recipe, number) for number in range(len(self.recipe.shapes))]
         return tuple(size for size in sizes for _ in self.materials)
 
 
@@ -178,19 +171,18 @@ def make_plan(
     cards = tuple(_card(name, materials) for name in recipe.levels)
     laws = _materials(cards, model, materials)
     _check_clock(recipe, cards, materials)
-    inclusions = tuple(_place(recipe, number) for number in range(len(recipe.shapes)))
+    inclusions = tuple(inclusion_of(recipe, number) for number in range(len(recipe.shapes)))
     pokes: list[PlannedPoke] = []
     for shape, inclusion in enumerate(inclusions):
         for level, material in enumerate(laws):
             for site in range(recipe.pokes_each):
                 shared = site < recipe.protocol.shared_sites
                 key = (shape, 0, site) if shared else (shape, 1 + level, site)
-                seed = _seed(recipe.seed, key)
+                seed = seed_of(recipe.seed, key)
                 number = site if shared else site - recipe.protocol.shared_sites
                 over = recipe.protocol.is_over_inclusion(number)
-                scene = _scene(recipe, shape, inclusion, material, seed, over=over)
-                _check_path(recipe, shape, len(pokes), scene)
-                _check_scene(recipe, len(pokes), scene)
+                scene = draw_scene(recipe, shape, inclusion, material, seed, over=over)
+                check_drawn(recipe, shape, len(pokes), scene)
                 pokes.append(
                     PlannedPoke(
                         index=len(pokes),
@@ -338,103 +330,3 @@ def changes(old: object, new: object) -> str:
     order = ("recipe", "materials", "versions", "format")
     keys.sort(key=lambda key: order.index(key.split(".")[0]) if key.split(".")[0] in order else len(order))
     return ", ".join(keys[:3]) + (f" and {len(keys) - 3} more" if len(keys) > 3 else "")
-
-
-def _seed(root: int, key: Iterable[int]) -> int:
-    state = np.random.SeedSequence(entropy=root, spawn_key=tuple(key))
-    return int(state.generate_state(1, np.uint64)[0])
-
-
-def _place(recipe: Recipe, number: int) -> Inclusion:
-    """Inclusion of one shape at its position on the base."""
-    shape = recipe.shapes[number]
-    return shape.standing(*_position(recipe, number))
-
-
-def _position(recipe: Recipe, number: int) -> tuple[float, float, float]:
-    """Position of a shape on the base [mm], `border_mm` or more from the sides, and its rotation [rad]."""
-    shape = recipe.shapes[number]
-    random = np.random.default_rng(_seed(recipe.seed, (number, 2**32 - 1)))
-    room = [side / 2 - recipe.border_mm - shape.reach_mm for side in recipe.block_of(shape)[:2]]
-    x, y = (float(v) for v in random.uniform(-1, 1, 2) * room)
-    return x, y, float(random.uniform(0, math.pi / 2)) if shape.turned else 0.0
-
-
-def _size(recipe: Recipe, number: int) -> tuple[float, float, float]:
-    """Size of the block of one shape [m]."""
-    width, length, height = (side * _MM for side in recipe.block_of(recipe.shapes[number]))
-    return width, length, height
-
-
-def _site(
-    recipe: Recipe, number: int, inclusion: Inclusion, random: np.random.Generator, *, over: bool
-) -> tuple[float, float]:
-    """Draw a contact point [m] on the top face, or on that part of it which is right above the inclusion."""
-    shape, margin = recipe.shapes[number], recipe.protocol.margin_mm
-    room = np.array([side / 2 - margin for side in recipe.block_of(shape)[:2]])
-    if not over:
-        x, y = (float(v) * _MM for v in random.uniform(-1, 1, 2) * room)
-        return x, y
-    centre = np.array(_position(recipe, number)[:2])
-    low, high = np.maximum(-room, centre - shape.reach_mm), np.minimum(room, centre + shape.reach_mm)
-    column = level_depths(_size(recipe, number)[2])
-    for _ in range(_DRAWS if (low < high).all() else 0):
-        x, y = (float(v) * _MM for v in random.uniform(low, high))
-        points = np.stack([np.full_like(column, x), np.full_like(column, y), column], axis=1)
-        if inclusion.contains(points).any():
-            return x, y
-    raise InputError(
-        f"recipe {recipe.name}: protocol.over_inclusion: found no contact point above {shape.id} that is "
-        f"margin_mm = {margin:g} or more from the edges: expected a larger border_mm or a smaller margin_mm"
-    )
-
-
-def _scene(
-    recipe: Recipe, number: int, inclusion: Inclusion, material: Material, seed: int, *, over: bool
-) -> Poke:
-    """Draw a poke of a shape from a seed: contact point, angle to the normal, heading and course."""
-    protocol = recipe.protocol
-    random = np.random.default_rng(seed)
-    x, y = _site(recipe, number, inclusion, random, over=over)
-    angle = math.radians(float(random.uniform(0, protocol.max_angle_deg)))
-    heading = float(random.uniform(0, 2 * math.pi))
-    sine = math.sin(angle)
-    driven: dict[str, Any] = {
-        "depth": protocol.depth_mm * _MM,
-        "frame_spacing": protocol.frame_spacing_mm * _MM,
-    }
-    if protocol.course:
-        driven = {"course": draw_course(protocol.course, protocol.frame_spacing_mm, random)}
-    return Poke(
-        material=material,
-        site=(x, y),
-        direction=(sine * math.cos(heading), sine * math.sin(heading), -math.cos(angle)),
-        block=Block(size=_size(recipe, number), inclusion=inclusion),
-        rod=recipe.rod.rod,
-        friction=recipe.friction,
-        refinement=recipe.refinement,
-        **driven,
-    )
-
-
-def _check_scene(recipe: Recipe, index: int, poke: Poke) -> None:
-    """Refuse what the solver would refuse, before hours of others are solved."""
-    try:
-        check_scene(index, poke)
-    except ValueError as error:
-        reason = str(error).removeprefix(f"scene {index}: ")
-        raise InputError(f"recipe {recipe.name}: poke {index}: {reason}") from None
-
-
-def _check_path(recipe: Recipe, number: int, index: int, poke: Poke) -> None:
-    """Refuse a poke whose indenter, at its full depth, has left the block through a side."""
-    end = leaves(poke, poke.direction, deepest(poke))
-    if end is not None:
-        protocol, shape = recipe.protocol, recipe.shapes[number]
-        whose = str(index) if shape.block_mm is None else f"{index} in the block of {shape.id}"
-        raise InputError(
-            f"recipe {recipe.name}: protocol.margin_mm: expected contact points so far inside that no"
-            f" indenter leaves the block through a side at up to {protocol.max_angle_deg:g} degrees and"
-            f" {protocol.depth_mm:g} mm of depth, got {protocol.margin_mm:g}: that of poke {whose} ends at"
-            f" x = {end[0] / _MM:.3g}, y = {end[1] / _MM:.3g} mm"
-        )

@@ -20,7 +20,7 @@ Part = Annotated[float, Field(ge=0.0, le=1.0)]
 _RMS = "rms_"
 
 
-class _Told(Strict):
+class _Section(Strict):
     """A section of the file in which null is equivalent to a missing key."""
 
     @model_validator(mode="before")
@@ -29,7 +29,7 @@ class _Told(Strict):
         return {k: v for k, v in data.items() if v is not None} if isinstance(data, dict) else data
 
 
-class _Measured(_Told):
+class _Measured(_Section):
     """A section of the file whose keys rms_UNIT, rms_UNIT_before, ... contain a unit."""
 
     unit: str = ""
@@ -56,7 +56,7 @@ class Amplitude(Strict):
     sd: Annotated[float, Field(ge=0.0)]
 
 
-class Share(_Told):
+class Share(_Section):
     """Fraction of the explainable misfit with its 95 % interval.
 
     low and high are None if there is no bootstrap. By chance the values may lie outside 0 to 1.
@@ -67,7 +67,7 @@ class Share(_Told):
     high: float | None = None
 
 
-class Cause(_Told):
+class Cause(_Section):
     """A cause of the explanation.
 
     Attributes
@@ -121,7 +121,7 @@ class Gain(_Measured):
     folds: tuple[Fold, ...] = ()
 
 
-class Nearest(_Told):
+class Nearest(_Section):
     """Nearest explanation if none is named, and the reasons why it is not named."""
 
     causes: tuple[Cause, ...]
@@ -150,7 +150,7 @@ class ModelErrorNumbers(_Measured):
     shear_modulus_relative_sd: dict[str, float]
 
 
-class NoiseNumbers(_Told):
+class NoiseNumbers(_Section):
     """What is known about the noise.
 
     Attributes
@@ -170,7 +170,7 @@ class NoiseNumbers(_Told):
     records: tuple[dict[str, str | bool | float], ...]
 
 
-class Invisible(_Told):
+class Invisible(_Section):
     """An effect that the design cannot detect.
 
     Attributes
@@ -201,7 +201,7 @@ class Invisible(_Told):
         }
 
 
-class DiagnosisFile(_Told):
+class DiagnosisFile(_Section):
     """Content of diagnosis.json."""
 
     format: Literal[1, 2]

@@ -22,6 +22,7 @@ from calibration.experiment._fields import (
     RectangleSection,
     Strict,
     below,
+    metres,
     only_one,
     say,
 )
@@ -290,13 +291,9 @@ def _markers(entry: BeamEntry, files: Files, where: str) -> tuple[Marker, ...]:
         markers.append(
             Marker(
                 name=name,
-                position=_scaled(positions[name]),
+                position=metres(positions[name]),
                 time=table.numbers["time_s"][own],
                 displacement=np.ascontiguousarray(table.columns(*components)[own]) * _MM,
             )
         )
     return tuple(markers)
-
-
-def _scaled(values: Position) -> tuple[float, float, float]:
-    return (values[0] * _MM, values[1] * _MM, values[2] * _MM)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 from pathlib import PurePosixPath
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -141,10 +142,31 @@ class RectangleSection(Strict):
         return self
 
 
+def metres(point_mm: Position) -> tuple[float, float, float]:
+    """A point or vector of a file [mm] in SI."""
+    return (point_mm[0] * 1e-3, point_mm[1] * 1e-3, point_mm[2] * 1e-3)
+
+
 def below(key: str, value: float, limit_key: str, limit: float) -> None:
     """Refuses a standard deviation as large as what it belongs to."""
     if value >= limit:
         raise say(key, f"expected less than {limit_key} = {limit:g}, got {value:g}")
+
+
+class Identified(Protocol):
+    """An entry of a trial."""
+
+    @property
+    def id(self) -> str: ...
+
+
+def different_ids(trials: Sequence[Identified]) -> None:
+    """Refuses two trials of one id."""
+    seen: set[str] = set()
+    for k, trial in enumerate(trials):
+        if trial.id in seen:
+            raise say("trials", f"expected different ids, trial #{k + 1} has the id {trial.id} again")
+        seen.add(trial.id)
 
 
 def only_one(**given: object) -> None:

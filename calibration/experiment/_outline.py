@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.errors import InputError
 from calibration.experiment._files import Table, parse_table
 from calibration.experiment.model import Array
@@ -46,7 +47,7 @@ def read_sides(
     for side, sign in (("upper", 1.0), ("lower", -1.0)):
         chosen = np.array([row for row, name in enumerate(names) if name == side], dtype=np.intp)
         rows[side] = _from_clamp(table, side, points, chosen, corner=(0.0, sign * height_mm / 2))
-        length = np.hypot(*np.diff(points[rows[side]], axis=0).T).sum()
+        length = arc_length(points[rows[side]])[-1]
         if length < _SHORT * free_length_mm:
             raise InputError(
                 f"{table_path}: side {side}: expected at least {_SHORT:.0%} of the free length "

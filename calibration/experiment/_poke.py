@@ -22,6 +22,7 @@ from calibration.experiment._fields import (
     Numbers3,
     Position,
     Strict,
+    metres,
     only_one,
     say,
 )
@@ -45,7 +46,7 @@ class SphereEntry(Strict):
     centre_mm: Position
 
     def si(self) -> Inclusion:
-        return SphereInclusion(radius=self.radius_mm * _MM, centre=_scaled(self.centre_mm))
+        return SphereInclusion(radius=self.radius_mm * _MM, centre=metres(self.centre_mm))
 
 
 class BoxEntry(Strict):
@@ -57,7 +58,7 @@ class BoxEntry(Strict):
 
     def si(self) -> Inclusion:
         return BoxInclusion(
-            size=_scaled(self.size_mm), centre=_scaled(self.centre_mm), angle=math.radians(self.angle_deg)
+            size=metres(self.size_mm), centre=metres(self.centre_mm), angle=math.radians(self.angle_deg)
         )
 
 
@@ -70,7 +71,7 @@ class CylinderEntry(Strict):
 
     def si(self) -> Inclusion:
         return CylinderInclusion(
-            radius=self.radius_mm * _MM, height=self.height_mm * _MM, centre=_scaled(self.centre_mm)
+            radius=self.radius_mm * _MM, height=self.height_mm * _MM, centre=metres(self.centre_mm)
         )
 
 
@@ -171,11 +172,11 @@ def read_poke(entry: PokeEntry, files: Files, where: str) -> PokeTrial:
         id=entry.id,
         material=entry.material,
         specimen=entry.specimen,
-        block=Block(size=_scaled(entry.block_mm), inclusion=None if shape is None else shape.si()),
+        block=Block(size=metres(entry.block_mm), inclusion=None if shape is None else shape.si()),
         inclusion_mesh=mesh,
         rod_radius=entry.rod.radius_mm * _MM,
         rod_tip=entry.rod.tip,
-        start=_scaled(entry.start_mm),
+        start=metres(entry.start_mm),
         direction=u,
         record=record,
         force_sd=entry.force_sd_N,
@@ -239,7 +240,3 @@ def _surface(scan: SurfaceEntry, entry: PokeEntry, files: Files, where: str) -> 
 def _need_near(table: Table, columns: tuple[str, ...], entry: PokeEntry) -> None:
     for name in columns:
         table.need_within(name, _FAR * max(entry.block_mm), "3 times the block's largest side")
-
-
-def _scaled(values: Vector) -> Vector:
-    return (values[0] * _MM, values[1] * _MM, values[2] * _MM)

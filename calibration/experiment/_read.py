@@ -11,11 +11,11 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from calibration.experiment._beam import BeamEntry, read_beam
 from calibration.experiment._coupon import CouponEntry, read_coupon
-from calibration.experiment._fields import Name, Strict, below, say
+from calibration.experiment._fields import Name, Strict, below, different_ids, say
 from calibration.experiment._files import MAIN, Files
 from calibration.experiment._poke import PokeEntry, read_poke
 from calibration.experiment._yaml import parse
-from calibration.experiment.model import Experiment, MaterialBelief, Trial
+from calibration.experiment.model import Experiment, MaterialBelief, Trial, specimen_of
 
 # kg/m3: outside of it a density is one in g/cm3 or a slip
 _LIGHTEST, _HEAVIEST = 10.0, 30_000.0
@@ -60,11 +60,8 @@ class ExperimentEntry(Strict):
 
     @model_validator(mode="after")
     def _names(self) -> ExperimentEntry:
-        seen: set[str] = set()
+        different_ids(self.trials)
         for k, trial in enumerate(self.trials):
-            if trial.id in seen:
-                raise say("trials", f"expected different ids, trial #{k + 1} has the id {trial.id} again")
-            seen.add(trial.id)
             if trial.material not in self.materials:
                 known = ", ".join(self.materials)
                 raise say(
@@ -114,7 +111,7 @@ def _told_apart(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
     """The trials; specimens of two materials that have one name get their material's before it."""
     materials: dict[str, set[str]] = {}
     for t in trials:
-        materials.setdefault(t.specimen or t.material, set()).add(t.material)
+        materials.setdefault(specimen_of(t), set()).add(t.material)
     shared = {name for name, owners in materials.items() if len(owners) > 1}
     return tuple(
         replace(t, specimen=f"{t.material} {t.specimen}") if t.specimen in shared else t for t in trials

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim import Block, Circle, Rectangle
+from tisim import Beam, Block, Circle, Material, Rectangle
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -309,6 +309,30 @@ class CouponTrial:
 Trial = BeamTrial | PokeTrial | CouponTrial
 
 
+def kind_of(trial: Trial) -> str:
+    """Kind of a trial, as experiment.yaml names it: beam, poke, coupon."""
+    return type(trial).__name__.removesuffix("Trial").lower()
+
+
+def specimen_of(trial: Trial) -> str:
+    """Name of a trial's specimen: that of its material, if the trial names none."""
+    return trial.specimen or trial.material
+
+
+def beam_as_stated(trial: BeamTrial, material: Material, **settings: Any) -> Beam:
+    """Scene of a beam's trial as the lab states it; `settings` are further arguments of `tisim.Beam`."""
+    return Beam(
+        material=material,
+        length=trial.free_length,
+        section=trial.section,
+        supports=trial.supports,
+        grip_length=trial.grip_length,
+        gravity=trial.gravity,
+        tip_force=trial.tip_force,
+        **settings,
+    )
+
+
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Experiment:
     """A folder of measurements, read and checked.
@@ -336,8 +360,7 @@ class Experiment:
         """Number of trials by kind: beam, poke, coupon."""
         found: dict[str, int] = {}
         for trial in self.trials:
-            kind = type(trial).__name__.removesuffix("Trial").lower()
-            found[kind] = found.get(kind, 0) + 1
+            found[kind_of(trial)] = found.get(kind_of(trial), 0) + 1
         return found
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -351,8 +374,7 @@ class Experiment:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{escape(t.id)}</td><td>{type(t).__name__.removesuffix('Trial').lower()}</td>"
-            f"<td>{escape(t.material)}</td></tr>"
+            f"<tr><td>{escape(t.id)}</td><td>{kind_of(t)}</td><td>{escape(t.material)}</td></tr>"
             for t in self.trials
         )
         head = "<tr><th>trial</th><th>kind</th><th>material</th></tr>"

@@ -49,6 +49,12 @@ class Job:
         """The strain energy that the program gets."""
         return self.conversion.form
 
+    @property
+    def docstring(self) -> str:
+        """Names of material and beam, as they can stand in the docstring of a Python scene."""
+        name = self.name if self.scene is None else f"{self.name}: {self.scene.name}"
+        return name.replace("\\", "/").replace('"', "'")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Written:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, Experiment
+from calibration.experiment.model import BeamTrial, Experiment, beam_as_stated
 from calibration.export._forms import Form, as_law
 from tisim import Beam, Circle, Material, Result, simulate
 from tisim.discretisation.quadrature import reference
@@ -59,6 +59,11 @@ class BeamScene:
     def loaded(self) -> bool:
         """True if there is a tip force."""
         return bool(np.any(self.forces))
+
+    @property
+    def loaded_nodes(self) -> NDArray[np.intp]:
+        """Indices of the nodes with a tip force."""
+        return np.flatnonzero(np.any(self.forces != 0.0, axis=1))
 
     @property
     def mass(self) -> Array:
@@ -137,10 +142,7 @@ def scene_of(
     else:
         if chosen.tip_force_height:
             remarks += ("the tip force acts at the middle of the end face, not above its axis as measured",)
-        beam = Beam(
-            material=material, length=chosen.free_length, section=chosen.section, supports=chosen.supports,
-            grip_length=chosen.grip_length, gravity=chosen.gravity, tip_force=chosen.tip_force,
-        )  # fmt: skip
+        beam = beam_as_stated(chosen, material)
         name = f"trial {chosen.id} of experiment {experiment.name!r}"  # type: ignore[union-attr]
     size, rings = SIZES[element]
     mesh = beam_mesh(

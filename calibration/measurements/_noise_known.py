@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import robust_sd
 from calibration.measurements._layers import Layers
 
 Array = NDArray[np.float64]
@@ -23,7 +24,6 @@ Source = Literal["stated", "data"]
 FEWEST = 12  # least number of third differences for an estimate of a record's scatter
 FACTOR = 2.0  # ratio between stated and observed noise from which they contradict each other
 _WEIGHTS = np.array([1.0, -3.0, 3.0, -1.0])  # third difference: zero for a parabola
-_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,7 +152,7 @@ def roughness(values: Array) -> tuple[float, int]:
     left = left[np.isfinite(left)]
     if not left.size:
         return 0.0, 0
-    return float(_NORMAL * np.median(np.abs(left)) / np.linalg.norm(_WEIGHTS)), int(left.size)
+    return float(robust_sd(left) / np.linalg.norm(_WEIGHTS)), int(left.size)
 
 
 def typical(values: Sequence[float]) -> float:

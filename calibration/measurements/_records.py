@@ -1,8 +1,8 @@
-"""Functions on records of all kinds: segmentation into strokes, thinning, display, listing of names."""
+"""Records of all kinds: segmentation into strokes, thinning, display, names, what beams have in common."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol, TypedDict
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.experiment._thinning import groups
+from calibration.experiment.model import BeamTrial, specimen_of
 
 Array = NDArray[np.float64]
 
@@ -71,6 +72,25 @@ def bins(
     else:
         first = groups(driven[points], most, sd=sd)
     return first, np.diff(np.append(first, size)).astype(float)
+
+
+class OfBeam:
+    """What a record takes from the trial of its beam; see `calibration.measurements._model.Record`."""
+
+    trial: BeamTrial
+
+    @property
+    def material(self) -> str:
+        return self.trial.material
+
+    @property
+    def specimen(self) -> str:
+        return specimen_of(self.trial)
+
+    def _ranges(self, times: Sequence[float]) -> Mapping[str, tuple[float, float]]:
+        """`ranges` of a record that has these times [s]."""
+        length = 1e3 * self.trial.free_length
+        return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
 
 
 class Named(Protocol):

@@ -19,6 +19,7 @@ from calibration.experiment._fields import (
     Numbers3,
     Position,
     Strict,
+    different_ids,
     say,
 )
 from calibration.experiment._poke import InclusionEntry, Lengths3, RodEntry
@@ -193,11 +194,7 @@ class Answers(Strict):
 
     @model_validator(mode="after")
     def _ids(self) -> Answers:
-        seen: set[str] = set()
-        for k, trial in enumerate(self.trials):
-            if trial.id in seen:
-                raise say("trials", f"expected different ids, trial #{k + 1} has the id {trial.id} again")
-            seen.add(trial.id)
+        different_ids(self.trials)
         return self
 
 

@@ -12,6 +12,7 @@ from calibration.pages._figure import (
     paper,
     picture,
     plain,
+    round_magnification,
 )
 from calibration.pages._frame import template
 from calibration.pages._numbers import NOTHING, Cell, listed, millimetres, seconds, significant, with_sd
@@ -33,6 +34,7 @@ __all__ = [
     "paper",
     "picture",
     "plain",
+    "round_magnification",
     "seconds",
     "significant",
     "template",

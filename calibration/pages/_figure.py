@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import floor, log10
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -48,6 +49,14 @@ def picture(figure: Figure, name: str, caption: str) -> Picture:
 def file_name(name: str) -> str:
     """The name with ASCII letters, digits, dots and dashes alone; two names may become one."""
     return re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "picture"
+
+
+def round_magnification(wanted: float, digits: Iterable[float] = (1, 2, 5)) -> float:
+    """The largest round factor up to `wanted`, one of `digits` times a power of ten; at least 1."""
+    if wanted <= 1.0:
+        return 1.0
+    power = 10.0 ** floor(log10(wanted))
+    return float(max(d * power for d in digits if d * power <= wanted))
 
 
 def plain(axes: Any) -> Any:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from calibration._numerics import arc_length
 from calibration.photo._camera import View
 from calibration.photo._foreground import Foreground, show_body
 from calibration.photo._image import RED, Grey, PhotoProblem, draw_points
@@ -55,7 +56,7 @@ def refine(image: Grey, rough: Array, *, rounds: int = 2) -> Edge:
 
 def _even(line: Array) -> Array:
     """The polyline at steps of one pixel."""
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    s = arc_length(line)
     at = np.linspace(0.0, s[-1], max(int(s[-1]), 2))
     return np.column_stack([np.interp(at, s, line[:, 0]), np.interp(at, s, line[:, 1])])
 
@@ -248,8 +249,7 @@ def _check_edge(image: Grey, found: Foreground, label: int, edge: Edge, view: Vi
 def _scale(points: Array, view: View, plane: float) -> float:
     """Metres per pixel along a contour."""
     seen = view.on_plane(points, plane)
-    pixels = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
-    return float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum() / pixels)
+    return float(arc_length(seen)[-1] / arc_length(points)[-1])
 
 
 def _reversed(edge: Edge) -> Edge:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from calibration._numerics import robust_sd
 from calibration.photo._board import Board
 from calibration.photo._camera import View
 from calibration.photo._image import Grey, PhotoProblem, coloured, draw_mask
@@ -96,8 +97,8 @@ def _background(soft: NDArray[np.float32], hidden: Mask) -> tuple[NDArray[np.flo
         fit = np.zeros(terms.shape[1])
         fit[columns] = np.linalg.lstsq(terms[:, columns] * root[:, None], value * root, rcond=None)[0]
         left = value - terms @ fit
-        close = np.abs(left[np.abs(left) < 4.0 * scale])
-        narrower = 1.4826 * float(np.median(close)) if len(close) else scale
+        close = left[np.abs(left) < 4.0 * scale]
+        narrower = float(robust_sd(close)) if len(close) else scale
         scale = float(np.clip(narrower, max(0.6 * scale, 0.5), scale))
     column, row = np.arange(width) / width, np.arange(height) / width
     full = np.zeros((height, width))

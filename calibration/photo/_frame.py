@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import robust_sd
 from calibration.photo._camera import View
 from calibration.photo._contour import refine
 from calibration.photo._foreground import Clamp, Foreground, show_body
@@ -89,7 +90,7 @@ def find_face(
             picture,
         )
     # points along an edge err together: a tenth of them count
-    sd = 1.4826 * float(np.median(left)) / np.sqrt(max(len(left) / 10, 1.0)) + 5e-6
+    sd = float(robust_sd(left)) / np.sqrt(max(len(left) / 10, 1.0)) + 5e-6
     return Face(x=x, sd=sd, lean=float(np.arctan(slope)), pixels=pixels)
 
 
@@ -100,7 +101,7 @@ def _robust_line(z: Array, x: Array) -> tuple[float, float]:
     for _ in range(5):
         slope, value = (float(c) for c in np.polyfit(z[keep], x[keep], 1))
         left = np.abs(x - value - slope * z)
-        keep = left <= max(3.0 * 1.4826 * float(np.median(left[keep])), 1e-6)
+        keep = left <= max(3.0 * float(robust_sd(left[keep])), 1e-6)
     return slope, value
 
 

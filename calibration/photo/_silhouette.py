@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 import tisim
+from calibration._numerics import arc_length, robust_sd
 from calibration.photo._camera import View
 from calibration.photo._contour import Contour
 
@@ -89,9 +90,8 @@ def end_face(
 
 def _tangents(points: Array, window: float) -> Array:
     """Unit tangents of an even polyline, by local parabolas over `window`."""
-    step = float(np.linalg.norm(np.diff(points, axis=0), axis=1).mean())
-    half = int(max(2, min(round(0.5 * window / step), (len(points) - 1) // 2)))
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    s = arc_length(points)
+    half = int(max(2, min(round(0.5 * window / np.diff(s).mean()), (len(points) - 1) // 2)))
     sums = [np.concatenate([[0.0], np.cumsum(v)]) for v in _moments(s, points)]
     row = np.arange(len(points))
     low = np.clip(row - half, 0, len(points) - 2 * half - 1)
@@ -153,7 +153,7 @@ def to_plane(view: View, contour: Contour, section: Section, *, plane: float) ->
         left = t[face] - front - reach
         left = left[np.isfinite(left)]
         reach += float(np.median(left))
-    end_sd = 1.4826 * float(np.median(np.abs(left - np.median(left))))
+    end_sd = float(robust_sd(left - np.median(left)))
     # the contour follows the tube as far as the face; from there on it is the face's rim
     longer = []
     for kept, more, sign in ((contour.upper, contour.end, 1), (contour.lower, contour.end[::-1], -1)):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_lsq_spline
 
+from calibration._numerics import arc_length
 from calibration.experiment import PhotoSettings
 from calibration.experiment.model import Registration, Supports, TracedOutline
 from calibration.photo._board import Board
@@ -25,7 +26,7 @@ _KNOTS = 0.010  # [m]: a beam bends smoothly over that
 
 def edge_noise(points: Array) -> tuple[float, float]:
     """sd [m] across an edge (k, 2) [m] about a smooth line, and Gaussian correlation length [m] along it."""
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    s = arc_length(points)
     inner = np.linspace(0.0, s[-1], max(int(s[-1] / _KNOTS), 1) + 1)[1:-1]
     knots = np.concatenate([[0.0] * 4, inner, [s[-1]] * 4])
     line = make_lsq_spline(s, points, knots, k=3)
@@ -105,7 +106,7 @@ def sample(
 
 def _thin(line: Array) -> Array:
     """A point every millimetre, each by a straight line through its own millimetre."""
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    s = arc_length(line)
     count = max(int(s[-1] / _SPACING), 2)
     at = np.linspace(0.0, s[-1], count + 1)
     half = 0.5 * s[-1] / count

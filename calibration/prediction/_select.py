@@ -7,13 +7,13 @@ from collections.abc import Callable
 from fnmatch import fnmatchcase
 
 from calibration.errors import OptionError
-from calibration.experiment.model import BeamTrial, Experiment, Trial
+from calibration.experiment.model import BeamTrial, Experiment, Trial, specimen_of
 
 # what a pattern may be asked of, beside a trial's id
 BY: dict[str, Callable[[Trial], str]] = {
     "id": lambda t: t.id,
     "material": lambda t: t.material,
-    "specimen": lambda t: t.specimen or t.material,
+    "specimen": specimen_of,
     "length": lambda t: f"{1e3 * t.free_length:g}" if isinstance(t, BeamTrial) else "",
     "mode": lambda t: str(getattr(t, "mode", "")),
 }

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil, floor, log10
+from math import ceil
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.measurements.outlines.turned import turned
-from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain
+from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, round_magnification
 from calibration.study.calibration import Calibration
 from tisim.view import View
 
@@ -97,7 +98,7 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
                 normal=f.normal,
                 raw=s.raw[part],
                 left=s.left[part],
-                along=_along(traced),
+                along=traced[0, 0] + arc_length(traced),
             )
             for traced, f, part in zip(
                 (p.outline.upper, p.outline.lower), s.feet, (slice(n), slice(n, None)), strict=True
@@ -109,11 +110,6 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
         simulated[p.trial.id] = (s.simulated[0], s.simulated[1])
     view = turned(seen, title=f"Measured outlines over the beams of {chosen.label}")
     return Drawn(photographs=tuple(photographs), simulated=simulated, view=view)
-
-
-def _along(edge: Array) -> Array:
-    steps = np.linalg.norm(np.diff(edge, axis=0), axis=1)
-    return edge[0, 0] + np.concatenate([[0.0], np.cumsum(steps)])
 
 
 _SIDES = (("upper edge", COLOURS[0]), ("lower edge", COLOURS[1]))
@@ -218,10 +214,4 @@ def _simulated(axes: Any, lines: tuple[Any, Any], width: float, colour: str, tex
 def _factor(photographs: list[DrawnPhotograph], size_mm: float) -> float:
     """A round magnification that makes the largest residual about a tenth of the picture."""
     largest = 1e3 * max(float(np.abs(e.left).max()) for p in photographs for e in p.edges)
-    if largest <= 0.0:
-        return 1.0
-    wanted = 0.08 * size_mm / largest
-    if wanted <= 1.0:
-        return 1.0
-    power = 10.0 ** floor(log10(wanted))
-    return max(m * power for m in (1, 2, 5) if m * power <= wanted)
+    return round_magnification(0.08 * size_mm / largest) if largest > 0.0 else 1.0

@@ -172,14 +172,10 @@ def _direction(weights: Mapping[str, float]) -> str:
     return f"the data do not determine {listed(moves)} together: these changes cancel each other"
 
 
-def _why(r: Calibration) -> str:
-    return "; ".join(r.lacking) if r.status == "lack of fit" else r.message
-
-
 def troubles(results: Sequence[Calibration]) -> list[str]:
     """Fits that are no calibration, each with its message."""
     return [
-        f"{r.material}, {r.label}: {r.status}" + (f" ({why})" if (why := _why(r)) else "")
+        f"{r.material}, {r.label}: {r.status}" + (f" ({r.reason})" if r.reason else "")
         for r in results
         if r.status != "converged"
     ]

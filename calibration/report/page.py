@@ -270,7 +270,7 @@ def render(
         turned=turned_parts([s.view for s in sections if s.view is not None]),
         counts=", ".join(f"{n} {s}" for s, n in Counter(r.status for r in results).items()),
         total=len(results),
-        kinds=Counter(type(t).__name__.removesuffix("Trial").lower() for t in experiment.trials),
+        kinds=experiment.counts,
     )
 
 

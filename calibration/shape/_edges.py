@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
+from calibration._numerics import arc_length, gaussian_correlation
 from calibration.errors import InputError
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ def fit_between(
 ) -> EdgeFit:
     """The mid line of two edges (k, 2) [m]; far_face: x of the second clamp's face [m], if there is one."""
     middle = _rough_middle(upper, lower)
-    reach = float(np.linalg.norm(np.diff(middle, axis=0), axis=1).sum())
+    reach = float(arc_length(middle)[-1])
     if far_face is not None:
         reach += max(far_face - middle[-1, 0], 0.0)
     model = _Model(upper=upper, lower=lower, height=height, reach=reach, far_face=far_face)
@@ -96,7 +97,7 @@ class _Model:
 
     def first_guess(self, middle: Array) -> Array:
         p = np.empty(self.n_parameters)
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
+        s = arc_length(middle)
         slope = np.unwrap(np.arctan2(*np.diff(middle, axis=0).T[::-1]))
         at = np.minimum((s[1:] + s[:-1]) / 2, self.reach)
         basis = _basis(self.angle_knots, at, degree=3, reach=self.reach)
@@ -201,7 +202,7 @@ def _rough_middle(upper: Array, lower: Array, count: int = 60) -> Array:
     share = np.linspace(0.0, 1.0, count)
     sides = []
     for edge in (upper, lower):
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+        s = arc_length(edge)
         sides.append(_at(s / s[-1], edge, share))
     return np.asarray((sides[0] + sides[1]) / 2)
 
@@ -224,10 +225,7 @@ def _basis(knots: Array, s: Array, *, degree: int, reach: float) -> Array:
 
 def _noise(edge: Array, sd: float, correlation: float) -> Array:
     """Covariance [m2] of the tracing error along one edge: Gaussian correlation over its length."""
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
-    if correlation <= 0:
-        return np.asarray(sd**2 * np.eye(len(edge)))
-    return np.asarray(sd**2 * np.exp(-(((s[:, None] - s) / correlation) ** 2) / 2))
+    return sd**2 * gaussian_correlation(arc_length(edge), correlation)
 
 
 def section_angle(s: Array, angle: Array, *, height: float, start: float | None, end: float | None) -> Array:

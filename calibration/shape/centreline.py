@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.errors import InputError
 from calibration.experiment.model import Supports, TracedOutline
 from calibration.shape._edges import fit_between
@@ -146,7 +147,7 @@ def _check_cover(upper: Array, lower: Array, *, height: float, free_length: floa
                 f"outline, {name} edge: expected to end within {_MAX_GAP * height * 1e3:.1f} mm of the far "
                 f"clamp face at x = {free_length * 1e3:.1f} mm, ends at x = {edge[-1, 0] * 1e3:.1f} mm"
             )
-    length = sum(float(np.linalg.norm(np.diff(e, axis=0), axis=1).sum()) for e in (upper, lower)) / 2
+    length = sum(float(arc_length(e)[-1]) for e in (upper, lower)) / 2
     if not _LEAST * free_length < length < _MOST * free_length:
         raise InputError(
             f"outline: expected edges about as long as the free length of {free_length * 1e3:.1f} mm, "

@@ -5,7 +5,8 @@ from calibration.study.calibrate import FitOptions, best_so_far, calibrate
 from calibration.study.calibration import Calibration, HeldOut
 from calibration.study.cards import best, card, usable, write_card
 from calibration.study.measurements import Measurements, ObjectiveName, OnSetup, measurements
-from calibration.study.run import Task, by_cost, run, stopped, tasks_for
+from calibration.study.run import run, stopped
+from calibration.study.tasks import Task, by_cost, tasks_for
 
 __all__ = [
     "Calibration",

@@ -149,6 +149,11 @@ class Calibration:
     held: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
+    def reason(self) -> str:
+        """The phrases of `lacking` for a lack of fit, else `message`."""
+        return "; ".join(self.lacking) if self.status == "lack of fit" else self.message
+
+    @property
     def mean_dice(self) -> float | None:
         """Mean Dice of the photographs where that was the objective."""
         return 1.0 - self.chi2 * SCALE**2 / self.points if self.objective == "dice" and self.points else None

@@ -185,7 +185,7 @@ def _provenance(
         f"Calibrated on experiment {experiment.name!r} (sha256 {experiment.digest[:16]}) by calibration.fit:"
         f" best law {chosen.label}, shear modulus {chosen.shear_modulus:.5g} Pa, {_agreement(chosen)}."
     ]
-    states = [f"{r.label}: {r.status}{' (' + why + ')' if (why := _why(r)) else ''}" for r in results]
+    states = [f"{r.label}: {r.status}{f' ({r.reason})' if r.reason else ''}" for r in results]
     lines.append("Fits: " + "; ".join(states) + ".")
     if chosen.lacking:
         lines.append(
@@ -224,10 +224,6 @@ def _why_not(r: Calibration, chosen: Calibration) -> str:
     if not _same_parts(r, chosen):
         return f"beside other parts than those of {chosen.label}"
     return "another fit of its law is better"
-
-
-def _why(r: Calibration) -> str:
-    return "; ".join(r.lacking) if r.status == "lack of fit" else r.message
 
 
 def _prior_interval(law: str) -> tuple[float, float]:

@@ -90,6 +90,19 @@ class Discretisation:
         np.add.at(volume, mesh.elements.ravel(), shares.ravel())
         return volume
 
+    def free_components(self, values: Array) -> Array:
+        """Nodal values (n, 3) at the free nodes, with held components zero, shape (n_free, 3)."""
+        found: Array = values[self.pattern.free]
+        found[self.held] = 0.0
+        return found
+
+    def support_force(self, force: Array) -> Array:
+        """Force of the supports on the whole body for nodal forces (n, 3) less the load [N], shape (3,)."""
+        support: Array = force[self.fixed].sum(axis=0) * self.multiplicity
+        for axis in self.mesh.symmetry:
+            support["xyz".index(axis)] = 0.0
+        return support
+
     def hold(self, blocks: Array) -> None:
         """Replace the rows and columns of the held components in blocks (nb, 3, 3) by a scaled identity."""
         if not self.held.any():
@@ -97,7 +110,7 @@ class Discretisation:
         p = self.pattern
         rows = np.repeat(np.arange(len(p.free)), np.diff(p.indptr))
         diagonal = p.indptr[:-1]
-        scale = np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean()
+        scale = np.abs(p.diagonal(blocks)).mean()
         partly: NDArray[np.bool_] = np.any(self.held, axis=1, keepdims=True)[:, 0]
         touched = np.flatnonzero(partly[rows] | partly[p.indices])
         keep = ~self.held[rows[touched]][:, :, None] & ~self.held[p.indices[touched]][:, None, :]
@@ -259,6 +272,14 @@ class DiscretisedBody:
                 x, du, self.discretisation.mesh.elements, ref.gradients, self._weights, self._kb, out
             )
         return out
+
+    def out_of_balance(self, force: Array) -> Array:
+        """Out-of-balance force of internal forces (n, 3) at the free nodes [N], shape (n_free, 3)."""
+        return self.discretisation.free_components(force - self.dead_load)
+
+    def load_norm(self) -> float:
+        """Norm of the dead load at the free nodes [N]."""
+        return float(np.linalg.norm(self.dead_load[self.discretisation.pattern.free]))
 
     def energy(self, x: Array) -> tuple[float, float]:
         """Potential energy including that of the dead load [J], and the smallest det F."""

@@ -41,6 +41,10 @@ class Pattern:
         """Slots of other node lists `conn` (f, a), such as contact facets, whose pairs are in the pattern."""
         return _slots(self.index, self.indptr, self.indices, conn)
 
+    def diagonal(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Diagonal of the matrix of blocks (nb, 3, 3), shape (n, 3)."""
+        return blocks[self.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+
 
 def distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
     """Distinct keys in ascending order; sorting takes a tenth of the time of the hashes of `np.unique`."""

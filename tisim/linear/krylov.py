@@ -121,7 +121,7 @@ class FactorGMRES:
         if self._joined is not None:
             blocks = self._joined(blocks)
         diagonal = self._pattern.indptr[:-1]
-        scale = float(np.abs(blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
+        scale = float(np.abs(self._pattern.diagonal(blocks)).mean())
         self.shift = self._wanted
         for _ in range(8):
             matrix = blocks

@@ -8,19 +8,11 @@ from concurrent.futures import Future
 
 from tisim.parallel.chunks import Chunk, solve_chunk
 from tisim.parallel.extensions import adopt
-from tisim.parallel.threads import one_thread
+from tisim.parallel.threads import SAME_BYTES, one_thread
 from tisim.result import Result
 
 IDLE_SECONDS = 120.0  # time for which processes wait for the next batch
 START_SECONDS = 3.0  # time to start them: imports, Taichi's runtime and the kernels of a law, on each core
-
-# Set before a worker imports anything: one core per scene, and identical bytes on each of them.
-_ENVIRONMENT = {
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "MKL_CBWR": "AUTO,STRICT",
-}
 
 _warm_until = 0.0
 _missed = 0.0
@@ -61,7 +53,7 @@ def submit(chunks: Sequence[Chunk], workers: int) -> dict[Future[Solved], Chunk]
     from loky import get_reusable_executor
     from loky.process_executor import BrokenProcessPool
 
-    executor = get_reusable_executor(max_workers=workers, timeout=IDLE_SECONDS, env=_ENVIRONMENT)
+    executor = get_reusable_executor(max_workers=workers, timeout=IDLE_SECONDS, env=SAME_BYTES)
     futures: dict[Future[Solved], Chunk] = {}
     for chunk in chunks:
         try:

@@ -5,6 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+# Environment of processes before they import anything: one core per scene. Further threads would compete,
+# and would change the order of sums.
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+# MKL may otherwise pick another path for another memory alignment, and the bytes would differ
+SAME_BYTES = {**ONE_THREAD, "MKL_CBWR": "AUTO,STRICT"}
+
 _depth = 0
 
 

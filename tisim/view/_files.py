@@ -13,8 +13,8 @@ from tisim.io.export import FIELDS
 from tisim.io.picture import across
 from tisim.io.read import SOLIDS, is_mask, meshio_file
 from tisim.mesh import Mesh, MeshError
+from tisim.view._quantities import Quantity, curve, frames_shown, label, thinned
 from tisim.view._result import COLOURINGS, body_surfaces, handy, rod, towards
-from tisim.view._told import Told, curve, frames_shown, label, thinned
 from tisim.view._view import Array, Field, Ints, View
 
 _LEFT_OUT = {"rest_position", "displacement", *FIELDS}
@@ -81,17 +81,17 @@ def _view_of_vtu(name: str, paths: list[Path]) -> View:
     if has_rod:
         radius, length, edge = (float(v) for v in constant[0]["rod_shape"])
         surfaces.append(rod(Rod(radius=radius, length=length, edge_radius=edge), tips, axes))
-    told = [_told(c, has_rod) for c in constant]
+    stated = [_quantities(c, has_rod) for c in constant]
     labels = [
         label(words) if words else path.name
-        for words, path in zip(told, [paths[k] for k in kept], strict=True)
+        for words, path in zip(stated, [paths[k] for k in kept], strict=True)
     ]
-    whole = all(len(words) > 1 for words in told)
+    whole = all(len(words) > 1 for words in stated)
     return View(
         title=name,
         labels=tuple(labels),
         surfaces=tuple(surfaces),
-        curve=curve([words[0] for words in told], [words[-1] for words in told]) if whole else None,
+        curve=curve([words[0] for words in stated], [words[-1] for words in stated]) if whole else None,
         towards=towards(sideways, steep=has_rod),
         opened=has_rod,
         rest=not has_rod and len(read) == 1,
@@ -167,8 +167,8 @@ def _fields(read: list[Any], rest: Array, positions: Array) -> tuple[Field, ...]
     return tuple(found)
 
 
-def _told(constant: dict[str, Array], has_rod: bool) -> list[Told]:
-    found: list[Told] = []
+def _quantities(constant: dict[str, Array], has_rod: bool) -> list[Quantity]:
+    found: list[Quantity] = []
     if has_rod and "load" in constant:
         found.append(("depth", 1e3 * float(constant["load"]), "mm"))
     elif "load" in constant and "time" not in constant:

@@ -13,7 +13,7 @@ from tisim.mesh import Mesh, boundary_facets, triangles, unfold
 from tisim.problems.indentation.rod import rod_surface
 from tisim.problems.indentation.turning import axis_at
 from tisim.result import Result
-from tisim.view._told import Told, curve, frames_shown, label, thinned
+from tisim.view._quantities import Quantity, curve, frames_shown, label, thinned
 from tisim.view._view import REST, STEEL, Array, Field, Surface, View, outlines
 
 PIECE = 2e-3  # length of the pieces of a rod's shaft, short for the painter's algorithm [m]
@@ -129,10 +129,10 @@ def rod(shape: Rod, tips: Array, axes: Array) -> Surface:
     )
 
 
-def _place(result: Result, frame: int) -> list[Told]:
+def _place(result: Result, frame: int) -> list[Quantity]:
     """Load parameter (depth, stretch or fraction of the load) and time of a frame."""
     load = float(result.load[frame])
-    found: list[Told] = []
+    found: list[Quantity] = []
     if result.rod_tip is not None:
         found.append(("depth", 1e3 * load, "mm"))
     elif result.nominal_stress is not None:
@@ -145,7 +145,7 @@ def _place(result: Result, frame: int) -> list[Told]:
     return found
 
 
-def _force(result: Result, frame: int) -> Told:
+def _force(result: Result, frame: int) -> Quantity:
     if result.rod_force is not None:
         return "force on the rod", float(np.linalg.norm(result.rod_force[frame])), "N"
     if result.nominal_stress is not None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from tisim.bodies import Rod
 from tisim.io.picture import across
+from tisim.view._quantities import Quantity, curve, frames_shown, label, thinned
 from tisim.view._result import rod, towards
-from tisim.view._told import Told, curve, frames_shown, label, thinned
 from tisim.view._view import REST, Field, Surface, View
 
 _NEEDED = (
@@ -82,23 +82,23 @@ def _view(path: Path, store: Any, index: int) -> View:
     )
     depths = 1e3 * np.asarray(store["depth"][frames], dtype=float)[kept]
     forces = np.linalg.norm(np.asarray(store["rod_force"][frames], dtype=float)[kept], axis=1)
-    places: list[list[Told]] = [[("depth", float(d), "mm")] for d in depths]
+    places: list[list[Quantity]] = [[("depth", float(d), "mm")] for d in depths]
     if "time" in store:
-        for told, time in zip(places, store["time"][frames][kept], strict=True):
-            told.append(("time", float(time), "s"))
-    pushed: list[Told] = [("force on the rod", float(f), "N") for f in forces]
+        for quantities, time in zip(places, store["time"][frames][kept], strict=True):
+            quantities.append(("time", float(time), "s"))
+    pushed: list[Quantity] = [("force on the rod", float(f), "N") for f in forces]
     sideways = across(tuple(axes[0]))
     shape_name = store.attrs["shapes"][int(store["poke_shape"][index])]
     level = store.attrs["softness"][int(store["poke_softness"][index])]
     return View(
         title=f"{path.name}: poke {index}, inclusion {shape_name}, material {level}",
-        labels=tuple(label([*told, force]) for told, force in zip(places, pushed, strict=True)),
+        labels=tuple(label([*quantities, force]) for quantities, force in zip(places, pushed, strict=True)),
         surfaces=(
             body,
             Surface(positions=rest[None], triangles=triangles, colour=REST, rest=True),
             rod(shape, tips, axes),
         ),
-        curve=curve([told[0] for told in places], pushed),
+        curve=curve([quantities[0] for quantities in places], pushed),
         towards=towards(sideways, steep=True),
         notes=(*thinned(total), "A store holds the surface: stress and strain take a simulation."),
     )

@@ -24,7 +24,7 @@ FALLBACK = 0.2  # least such fraction, if no set of folds keeps KEPT
 VISIBLE = 5.0  # standard deviations from which an effect is visible in a fold
 SEEN = 10.0  # least amplitude in standard deviations from every training set, if neither holds
 ROUNDING = 1e-7  # relative length of an amplitude's column, without the coordinates, that is rounding error
-UNSEEN_STEPS = 10  # Gauss-Newton steps over the coordinates that only a fold determines
+UNCONSTRAINED_STEPS = 10  # Gauss-Newton steps over the coordinates that only a fold determines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -317,7 +317,7 @@ def _predicted(model: MeasurementModel, fold: Rows, full: Fit, candidates: tuple
     others = model.subset(fold, others=True)
     trained = fit(others, _nearer(model, others, fold, full), candidates).state
     test = model.subset(fold, others=False)
-    state = _with_unseen(test, trained, model.unconstrained(fold))
+    state = _with_unconstrained(test, trained, model.unconstrained(fold))
     z = test.residuals([state])[0][: test.points]
     return _Fold(state=state, chi2=float(z @ z), rms=test.distance_rms(state), points=test.points)
 
@@ -342,19 +342,19 @@ def _nearer(model: MeasurementModel, others: MeasurementModel, fold: Rows, full:
     return nearer if _squares(others, nearer) < _squares(others, there) else there
 
 
-def _with_unseen(test: MeasurementModel, trained: State, unseen: Rows) -> State:
-    """Fit the coordinates that only the fold constrains to it (`unseen`, shape (n,)).
+def _with_unconstrained(test: MeasurementModel, trained: State, unconstrained: Rows) -> State:
+    """Fit the coordinates that only the fold constrains to it (`unconstrained`, shape (n,)).
 
     Examples are the modulus of a material that was left out, or a release time. All other coordinates and the
-    amplitudes stay as trained: if free, they would absorb misfit that the unseen coordinates explain.
+    amplitudes stay as trained: if free, they would absorb misfit that these coordinates explain.
     """
-    if not unseen.any():
+    if not unconstrained.any():
         return trained
     state, now = trained, _squares(test, trained)
-    for _ in range(UNSEEN_STEPS):
+    for _ in range(UNCONSTRAINED_STEPS):
         linear = test.linearise(state, ())
         size = np.linalg.norm(linear.by_u, axis=0)
-        used = unseen & (size > 0.0)
+        used = unconstrained & (size > 0.0)
         move = np.zeros(len(state.u))
         move[used] = -np.linalg.lstsq(linear.by_u[:, used] / size[used], linear.z, rcond=1e-6)[0] / size[used]
         move *= min(1.0, LONGEST / max(float(np.abs(move).max(initial=0.0)), LONGEST))

@@ -197,7 +197,7 @@ def _after(scene: BeamScene, last: float) -> list[str]:
     ]
     out.append("    </Elements>")
     sets = {"clamp": scene.held, "end": scene.watched}
-    loaded = np.flatnonzero(np.any(scene.forces != 0.0, axis=1))
+    loaded = scene.loaded_nodes
     sets.update({f"loaded{n + 1}": np.array([n]) for n in loaded})
     out += [
         f'    <NodeSet name="{k}">{",".join(map(str, np.asarray(s) + 1))}</NodeSet>' for k, s in sets.items()

@@ -109,16 +109,15 @@ def write(job: Job, folder: Path) -> Written:
     if job.scene is None:
         return Written(files=files, remarks=tuple(remarks))
     scene = job.scene
-    loaded = np.flatnonzero(np.any(scene.forces != 0.0, axis=1))
     beam = folder / "beam.py"
     beam.write_text(
         SCENE.format(
-            title=f"{job.name}: {scene.name}".replace("\\", "/").replace('"', "'"),
+            title=job.docstring,
             density=f"{density:.10g}", mu=f"{form.mu[0]:.10g}", lam=f"{form.lam:.10g}",
             damp=DAMPING,
             gravity=tuple(float(g) for g in scene.beam.gravity), clamped=[int(n) for n in scene.held],
-            end=[int(n) for n in scene.watched], loaded=[int(n) for n in loaded],
-            forces=[[float(x) for x in scene.forces[n]] for n in loaded],
+            end=[int(n) for n in scene.watched], loaded=scene.loaded_nodes.tolist(),
+            forces=[[float(x) for x in scene.forces[n]] for n in scene.loaded_nodes],
         ),
         encoding="utf-8",
     )  # fmt: skip

@@ -11,8 +11,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
-
 from calibration.export._forms import Form
 from calibration.export._gmsh import write_msh
 from calibration.export._job import Job, Target, Written
@@ -103,14 +101,13 @@ def write(job: Job, folder: Path) -> Written:
     if job.scene is None:
         return Written(files=files, remarks=tuple(remarks))
     scene = job.scene
-    loaded = np.flatnonzero(np.any(scene.forces != 0.0, axis=1))
     beam = folder / "beam.py"
     beam.write_text(
         SCENE.format(
-            title=f"{job.name}: {scene.name}".replace("\\", "/").replace('"', "'"),
+            title=job.docstring,
             clamped=[int(n) for n in scene.held],
-            loaded=[int(n) for n in loaded],
-            forces=[[float(x) for x in scene.forces[n]] for n in loaded],
+            loaded=scene.loaded_nodes.tolist(),
+            forces=[[float(x) for x in scene.forces[n]] for n in scene.loaded_nodes],
             gravity=[float(g) for g in scene.beam.gravity],
             density=f"{job.material.density:.10g}",
             law=law,

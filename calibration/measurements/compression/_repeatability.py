@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import linregress, norm, t
 
+from calibration._numerics import robust_sd
 from calibration.measurements.compression._record import is_compressed
 from calibration.measurements.homogeneous._record import Record
 
@@ -25,7 +26,6 @@ TINY = 1e-16  # variance, of a logarithm
 LEAST = 0.001  # of a bend: that some repeats agree better than this may be luck
 ALIKE = 1.3  # ratio of the times of two loadings at one speed, at most
 _SURE = 0.995  # few repeats tell their scatter badly: as much wider as Student's t is here
-_NORMAL = 1.4826  # standard deviations in a median absolute deviation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,7 +157,7 @@ def _variances(group: Sequence[Record], last: float) -> tuple[Array, int]:
         white, square = max(white, TINY), np.maximum(square, TINY)
         spread = np.linalg.inv(columns.T @ columns / white + np.diag(1.0 / square))
         terms = spread @ columns.T @ wanted / white
-        square = (_NORMAL * np.median(np.abs(terms), axis=1)) ** 2 + np.diag(spread)
+        square = robust_sd(terms, axis=1) ** 2 + np.diag(spread)
         left = np.sum((wanted - columns @ terms) ** 2) / len(group)
         white = (left + np.trace(columns @ spread @ columns.T)) / GRID
     return square * len(group) / known, known

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment.model import CouponMode, CouponTrial
+from calibration.experiment.model import CouponMode, CouponTrial, specimen_of
 from calibration.measurements._course import NOISE, bins_over_time
 from calibration.measurements._records import Stroke, bins, strokes
 from calibration.measurements.homogeneous._course import (
@@ -222,7 +222,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
     return Record(
         name=trial.id,
         material=trial.material,
-        specimen=trial.specimen or trial.material,
+        specimen=specimen_of(trial),
         mode=trial.mode,
         sd=sd,
         branch=np.concatenate(numbers),

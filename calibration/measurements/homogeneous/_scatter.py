@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import mannwhitneyu
 
+from calibration._numerics import robust_sd
+
 Array = NDArray[np.float64]
 
 # If the lab gives no stress_sd, and the scatter grows with the stress: the error is relative to the stress,
@@ -19,7 +21,6 @@ FEWEST = 8  # different abscissae from which a scatter about a smooth curve is f
 ENOUGH = 24  # least number of points to decide if the scatter grows with the stress:
 CLEARLY = 2.0  # its ratio between the half with larger stresses and the half with smaller ones
 CHANCE = 0.005
-_NORMAL = 1.4826  # ratio of standard deviation to median absolute deviation, for normal errors
 REACH = 10.0  # least half width of the window of the slope, in standard deviations of the stretch
 _WINDOW = 0.15  # fraction of the points in the window of the slope
 
@@ -42,7 +43,7 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
         one = relative_sd(over, measured) * np.maximum(np.abs(smooth), FLOOR * largest)
     else:
         left = _left(over, measured)
-        one = np.full(np.shape(values), 0.0 if left is None else _NORMAL * float(np.median(left[0])))
+        one = np.full(np.shape(values), 0.0 if left is None else float(robust_sd(left[0])))
     return np.asarray(np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE * largest))
 
 
@@ -64,16 +65,16 @@ def relative_sd(stretch: Array, stress: Array) -> float:
     """Relative error of a curve from its scatter.
 
     Each inner point is compared with the cubic through its two neighbours on either side (points of equal
-    stretch are averaged first). The error is 1.4826 times the median absolute residual over the stress, at
-    least SMALLEST_RELATIVE; SMALLEST_RELATIVE for fewer than FEWEST different stretches. It does not include
-    an error that all points share.
+    stretch are averaged first). The error is the robust standard deviation of the residuals over the stress,
+    at least SMALLEST_RELATIVE; SMALLEST_RELATIVE for fewer than FEWEST different stretches. It does not
+    include an error that all points share.
     """
     found = _left(stretch, stress)
     if found is None:
         return SMALLEST_RELATIVE
     left, inner = found
     scale = np.maximum(np.abs(inner), FLOOR * float(np.abs(stress).max(initial=0.0)))
-    return max(_NORMAL * float(np.median(left / np.maximum(scale, np.finfo(float).tiny))), SMALLEST_RELATIVE)
+    return max(float(robust_sd(left / np.maximum(scale, np.finfo(float).tiny))), SMALLEST_RELATIVE)
 
 
 def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:

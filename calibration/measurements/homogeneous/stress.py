@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calibration.experiment.model import CouponMode
+from calibration.experiment.model import CouponMode, CouponTrial
 from tisim import Material, laws
 from tisim.laws import evaluate
 
@@ -79,6 +79,18 @@ def nominal_stresses(material: Material, curves: Sequence[tuple[CouponMode, Arra
         stress[pulled] = _pulled(material, np.log(flat[pulled])[:, None] * driven[pulled], free[pulled])
     parts = np.split(stress, np.cumsum(sizes)[:-1]) if sizes else []
     return [part.reshape(s.shape) for part, s in zip(parts, stretches, strict=True)]
+
+
+def percent_error(trial: CouponTrial, material: Material) -> float:
+    """Root mean square of (model - data) over the curve's points, in percent of its largest |stress|.
+
+    NaN if the law has no solution at some point of the curve. ValueError if all stresses are 0.
+    """
+    largest = float(np.abs(trial.stress).max(initial=0.0))
+    if largest == 0.0:
+        raise ValueError(f"coupon {trial.id}: expected some stress that is not 0")
+    left = nominal_stress(material, trial.mode, trial.stretch) - trial.stress
+    return 100.0 * float(np.sqrt(np.mean(left**2))) / largest
 
 
 def _check(mode: str, stretch: Array) -> None:

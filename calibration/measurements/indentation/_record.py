@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.errors import InputError
-from calibration.experiment.model import PokeTrial
+from calibration.experiment.model import PokeTrial, specimen_of
 from calibration.measurements._course import bins_over_time
 from calibration.measurements._records import bins
 from calibration.measurements.homogeneous import unstated_sd
@@ -323,7 +323,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
     return Record(
         name=trial.id,
         material=trial.material,
-        specimen=trial.specimen or trial.material,
+        specimen=specimen_of(trial),
         blocks=block_names(trial),
         geometry=geometry,
         across=None if across is None else sides,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from calibration.experiment.model import BeamTrial, MaterialBelief
+from calibration.experiment.model import BeamTrial, MaterialBelief, specimen_of
 from tisim import Beam, Circle, Rectangle
 
 Section = Circle | Rectangle
@@ -53,7 +53,7 @@ def admitted(trials: Sequence[BeamTrial], belief: MaterialBelief) -> list[Admitt
     found: list[Admitted] = []
     specimens: dict[tuple[str, Section, tuple[float, ...]], list[int]] = {}
     for i, t in enumerate(trials):
-        specimens.setdefault((t.specimen or t.material, t.section, t.section_sd), []).append(i)
+        specimens.setdefault((specimen_of(t), t.section, t.section_sd), []).append(i)
     several = Counter(name for name, _, _ in specimens)
     for (name, section, sds), members in specimens.items():
         of = name if several[name] == 1 else f"{name}, {', '.join(trials[i].id for i in members)}"

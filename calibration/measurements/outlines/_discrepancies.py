@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.outlines._photographs import TracedPhotograph
 
@@ -63,7 +64,7 @@ def _bend(
             continue
         values = []
         for side, edge in zip(sides, (p.outline.upper, p.outline.lower), strict=True):
-            s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+            s = arc_length(edge)
             legendre = np.polynomial.legendre.legval(2.0 * s / s[-1] - 1.0, np.eye(degree + 1)[degree])
             values.append(side * legendre)
         whole[p.rows] = weight * (p.basis.T @ np.concatenate(values))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.experiment.model import BeamTrial
+from calibration.experiment.model import BeamTrial, specimen_of
 from calibration.measurements._effect import EffectModel
 from calibration.measurements.outlines.simulators import Simulator
 from tisim import Beam
@@ -76,7 +76,7 @@ class OutlineEffect(EffectModel):
     def labels(self, record: Any) -> tuple[str, ...]:
         """Trial, material and specimen: any of these can be named, also by a rig file."""
         trial: BeamTrial = getattr(record, "trial", record)
-        return (trial.id, trial.material, trial.specimen or trial.material)
+        return (trial.id, trial.material, specimen_of(trial))
 
 
 def cantilever(trial: BeamTrial) -> bool:

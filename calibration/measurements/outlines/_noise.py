@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky
 
+from calibration._numerics import arc_length, gaussian_correlation
 from calibration.experiment.model import Registration, TracedOutline
 from calibration.measurements.outlines._edges import Feet
 
@@ -28,13 +29,8 @@ def contour_root(outline: TracedOutline) -> Array:
     """Lower Cholesky factor of the contour error's covariance [m], shape (k, k), upper edge first."""
     blocks = []
     for edge in (outline.upper, outline.lower):
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
-        apart = s[:, None] - s[None, :]
-        if outline.correlation > 0.0:
-            kernel = np.exp(-(apart**2) / (2.0 * outline.correlation**2))
-        else:
-            kernel = np.eye(len(s))
-        blocks.append(outline.sd**2 * (kernel + FLOOR**2 * np.eye(len(s))))
+        kernel = gaussian_correlation(arc_length(edge), outline.correlation)
+        blocks.append(outline.sd**2 * (kernel + FLOOR**2 * np.eye(len(edge))))
     return np.asarray(cholesky(block_diag(*blocks), lower=True))
 
 
@@ -46,7 +42,7 @@ def smooth_basis(outline: TracedOutline) -> Array:
     """
     blocks = []
     for edge in (outline.upper, outline.lower):
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
+        s = arc_length(edge)
         degree = min(DEGREE, len(s) // 3)
         columns = np.polynomial.legendre.legvander(2.0 * s / s[-1] - 1.0, degree)
         blocks.append(np.linalg.qr(columns)[0])

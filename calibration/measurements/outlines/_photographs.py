@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, TracedOutline
+from calibration.measurements._records import OfBeam
 from calibration.measurements.outlines._edges import Feet, edges, feet
 from calibration.measurements.outlines._noise import contour_root, smooth_basis
 from tisim import Result
@@ -27,7 +28,7 @@ DECAYS = (0.5, 0.2)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TracedPhotograph:
+class TracedPhotograph(OfBeam):
     """One traced photograph of a beam.
 
     Attributes
@@ -53,22 +54,13 @@ class TracedPhotograph:
     covariance: Array
     rows: slice
 
-    @property
-    def material(self) -> str:
-        return self.trial.material
-
-    @property
-    def specimen(self) -> str:
-        return self.trial.specimen or self.trial.material
-
     @cached_property
     def groups(self) -> Mapping[str, str]:
         return {"material": self.material, "specimen": self.specimen, "trial": self.trial.id}
 
     @property
     def ranges(self) -> Mapping[str, tuple[float, float]]:
-        length = 1e3 * self.trial.free_length
-        return {"free_length_mm": (length, length), "time_s": (self.time, self.time)}
+        return self._ranges([self.time])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.experiment.model import BeamTrial, Experiment
+from calibration.experiment.model import BeamTrial, Experiment, specimen_of
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import reaches
 from calibration.measurements._state import State
@@ -108,7 +108,7 @@ class Scenes:
 
     def material(self, trial: BeamTrial, u: Array) -> Material:
         """Material of a trial's beam."""
-        specimen = trial.specimen or trial.material
+        specimen = specimen_of(trial)
         if self.baseline.whole:
             return self.baseline.material(specimen, u)
         shear = self.baseline.shear_modulus(specimen, u)

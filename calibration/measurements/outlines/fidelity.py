@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from calibration.experiment.model import BeamTrial
+from calibration.experiment.model import BeamTrial, beam_as_stated
 from tisim import Beam, Material, Solver
 
 
@@ -38,15 +38,10 @@ REFERENCE = Fidelity(layer=0.00175, rings=3, solver=Solver(max_iterations=12))
 
 def beam_scene(trial: BeamTrial, material: Material, *, density: float, fidelity: Fidelity) -> Beam:
     """Scene of a trial as the lab states it; `density` [kg/m3] replaces the material's."""
-    return Beam(
-        material=replace(material, density=density),
-        length=trial.free_length,
-        section=trial.section,
-        supports=trial.supports,
-        grip_length=trial.grip_length,
-        gravity=trial.gravity,
-        tip_force=trial.tip_force,
-        element=fidelity.element,  # type: ignore[arg-type]
+    return beam_as_stated(
+        trial,
+        replace(material, density=density),
+        element=fidelity.element,
         axial_element_size=fidelity.layer,
         radial_elements=fidelity.rings,
         solver=fidelity.solver,

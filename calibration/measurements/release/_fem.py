@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from calibration.experiment.model import beam_as_stated
 from calibration.measurements.release._beam import BeamParameters, ReducedBeam
 from calibration.measurements.release._record import Record
 from calibration.measurements.release._vibration import beam_markers, free_vibration
@@ -45,17 +46,11 @@ class Correction:
 
 def beam_of(record: Record, material: Material, *, fine: bool) -> Beam:
     """FEM scene of a record's trial; fine : use the fine mesh."""
-    t = record.trial
-    return Beam(
-        material=material,
-        length=t.free_length,
-        section=t.section,
-        supports=t.supports,
-        grip_length=t.grip_length,
-        gravity=t.gravity,
-        tip_force=t.tip_force,
+    return beam_as_stated(
+        record.trial,
+        material,
         tip_mass=record.parameters.tip_mass,
-        axial_element_size=t.free_length / LAYERS[fine],
+        axial_element_size=record.trial.free_length / LAYERS[fine],
         radial_elements=RINGS[fine],
         solver=Solver(tolerance=1e-6),
     )

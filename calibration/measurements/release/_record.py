@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment, Marker, MaterialBelief
+from calibration.measurements._records import OfBeam
 from calibration.measurements.release._beam import BeamParameters
 from calibration.measurements.release.ringdown import ringdown
 
@@ -51,33 +52,22 @@ class Sampled:
         return np.asarray(np.add.reduceat(values[self.index], self.starts, axis=0) / self.counts[:, None])
 
 
-class OfBeam:
-    """What a record of markers takes from its trial; see `calibration.measurements._model.Record`."""
-
-    trial: BeamTrial
+class OfMarkers(OfBeam):
+    """What a record of markers takes from its trial."""
 
     @property
     def name(self) -> str:
         return self.trial.id
 
     @property
-    def material(self) -> str:
-        return self.trial.material
-
-    @property
-    def specimen(self) -> str:
-        return self.trial.specimen or self.trial.material
-
-    @property
     def ranges(self) -> Mapping[str, tuple[float, float]]:
-        length = 1e3 * self.trial.free_length
         times = [c.time for c in self.trial.captures if c.outline is not None]
         times += [float(m.time[-1]) for m in self.trial.markers]
-        return {"free_length_mm": (length, length), "time_s": (min(times), max(times))}
+        return self._ranges(times)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Record(OfBeam):
+class Record(OfMarkers):
     """The markers of one trial.
 
     Its rows are, for each marker in x and then in z, the sample before the release and the means after it.

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, MaterialBelief
+from calibration.experiment.model import BeamTrial, MaterialBelief, beam_as_stated
 from calibration.measurements.release._record import (
     chosen_markers,
     hung_mass,
@@ -278,19 +278,13 @@ class MarkerObjective:
         return [replace(at_rest, solver=released) if s == "motion" else at_rest for s in self.stages]
 
     def _at_rest(self, material: Material) -> Beam:
-        t, f = self.trial, self.fidelity
-        return Beam(
-            material=replace(material, density=self.density),
-            length=t.free_length,
-            section=t.section,
-            supports=t.supports,
-            grip_length=t.grip_length,
-            gravity=t.gravity,
-            tip_force=t.tip_force,
+        return beam_as_stated(
+            self.trial,
+            replace(material, density=self.density),
             tip_mass=self.tip_mass,
-            axial_element_size=f.layer,
-            radial_elements=f.rings,
-            solver=Solver(tolerance=f.tolerance),
+            axial_element_size=self.fidelity.layer,
+            radial_elements=self.fidelity.rings,
+            solver=Solver(tolerance=self.fidelity.tolerance),
         )
 
     def _match(self, results: Sequence[Result]) -> Match | None:

@@ -20,7 +20,7 @@ from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
 from calibration.measurements._state import State
-from calibration.measurements.release._record import OfBeam
+from calibration.measurements.release._record import OfMarkers
 from calibration.measurements.release.objective import AtRest, MarkerObjective
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ SETTLED = 1.0 / 3.0  # last part of a record, whose mean is the position at rest
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SettledRecord(OfBeam):
+class SettledRecord(OfMarkers):
     """Markers of one trial at rest; its rows are x, y and z of each marker.
 
     Attributes

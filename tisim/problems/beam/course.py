@@ -99,11 +99,8 @@ class Path:
 
     def keep(self) -> None:
         body = self.system.body
-        fixed = body.discretisation.fixed
         force, min_jacobian = body.internal_forces(self.outcome.x)
-        support = (force[fixed] - body.dead_load[fixed]).sum(axis=0) * body.discretisation.multiplicity
-        for axis in body.discretisation.mesh.symmetry:
-            support["xyz".index(axis)] = 0.0
+        support = body.discretisation.support_force(force - body.dead_load)
         self.frames.append(
             Frame(
                 self.time, self.value, self.outcome.x, support, body.dissipated(), min_jacobian,
@@ -315,16 +312,14 @@ def _with_few_factors(path: Path, x: Array, tolerance: float, near: float) -> Ou
         a tangent cannot be factorised.
     """
     system = path.system
-    body, discretisation = system.body, system.body.discretisation
-    free, held = discretisation.pattern.free, discretisation.held
+    body, free = system.body, system.body.discretisation.pattern.free
     seen: list[tuple[Array, Array]] = []  # positions of free nodes, and the step from there
     renewed, slow, before = 0, 0, np.inf
     assert path.warped is not None
     path.warped.turn(x)
     for iteration in range(CHEAP):
         force, min_jacobian = body.internal_forces(x)
-        residual = (force - body.dead_load)[free]
-        residual[held] = 0.0
+        residual = body.out_of_balance(force)
         load = system.load_scale(force)
         relative = float(np.linalg.norm(residual)) / load if load > 0.0 else np.nan
         if not min_jacobian > CRUSHED or not np.isfinite(relative):

@@ -207,8 +207,8 @@ class Clamped:
             arm = x[nodes] - centres[clamp]
             way = ways[clamp]
             way[nodes, 0], way[nodes, 2] = -arm[:, 2], arm[:, 0]
-            pulled = (body.internal_forces(x + SMALL_TURN * way)[0] - force)[free] / SMALL_TURN
-            pulled[discretisation.held] = 0.0
+            change = body.internal_forces(x + SMALL_TURN * way)[0] - force
+            pulled = discretisation.free_components(change) / SMALL_TURN
             way[free] = discretisation.solver.solve(-pulled)
             slope[:, clamp] = (self._gap(x + SMALL_TURN * way) - self._gap(x)) / SMALL_TURN
             slope[clamp, clamp] += 1.0  # the gap's own angle, which `_gap` did not turn

@@ -92,14 +92,9 @@ def _result(
 ) -> Result:
     body = system.body
     force, min_jacobian = body.internal_forces(outcome.x)
-    support = force[body.discretisation.fixed].sum(axis=0) - body.dead_load[body.discretisation.fixed].sum(
-        axis=0
-    )
-    support *= body.discretisation.multiplicity
-    for axis in body.discretisation.mesh.symmetry:
-        support["xyz".index(axis)] = 0.0
+    support = body.discretisation.support_force(force - body.dead_load)
     done = outcome.status is Status.CONVERGED
-    load = system.load_norm()
+    load = system.body.load_norm()
     residual = system.residual_norm(outcome.x) / load if load > 0.0 else outcome.residual
     return Result(
         scene=scene,

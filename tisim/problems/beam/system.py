@@ -123,32 +123,26 @@ class BeamSystem:
         return self.body.energy(x)
 
     def linearise(self, x: Array) -> tuple[Array, float]:
-        discretisation = self.body.discretisation
         self._blocks, force, self.min_jacobian = self.body.stiffness(x, self._pressure)
         self._linearised_at = x
         self.counts["newton"] += 1
-        residual = (force - self.body.dead_load)[discretisation.pattern.free]
-        residual[discretisation.held] = 0.0
+        residual = self.body.out_of_balance(force)
         if self.min_jacobian <= 0.0:
             residual[:] = np.nan
         return residual, max(self.load_scale(force), self._rounding(x) / self.tolerance)
 
     def load_scale(self, force: Array) -> float:
         """What a residual is relative to [N], for internal forces (n, 3): the load, or that of the clamps."""
-        load = max(self.load_norm(), self.least_load)
+        load = max(self.body.load_norm(), self.least_load)
         if self.clamps_load:
             held = (force - self.body.dead_load)[self.body.discretisation.fixed]
             load = max(load, CLAMPS_PART * float(np.linalg.norm(held)))
         return load
 
-    def load_norm(self) -> float:
-        """Norm of the load at the free nodes [N]."""
-        return float(np.linalg.norm(self.body.dead_load[self.body.discretisation.pattern.free]))
-
     def _rounding(self, x: Array) -> float:
         """Estimated residual norm from rounding of the positions [N], 2 to 3 times the measured one."""
         assert self._blocks is not None
-        diagonal = self._blocks[self.body.discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+        diagonal = self.body.discretisation.pattern.diagonal(self._blocks)
         return 0.5 * float(np.finfo(float).eps * np.linalg.norm(diagonal) * np.abs(x).max())
 
     def step(self, residual: Array, *, forcing: float) -> Array:  # noqa: ARG002 - the solve is exact
@@ -157,7 +151,7 @@ class BeamSystem:
         discretisation.hold(self._blocks)
         self.factored_at = self._linearised_at
         diagonal = discretisation.pattern.indptr[:-1]
-        scale = float(np.abs(self._blocks[diagonal][:, [0, 1, 2], [0, 1, 2]]).mean())
+        scale = float(np.abs(discretisation.pattern.diagonal(self._blocks)).mean())
         shift = 0.0
         for attempt in range(8):
             discretisation.solver.factorise(self._blocks)
@@ -182,10 +176,7 @@ class BeamSystem:
         return moved
 
     def residual_norm(self, x: Array) -> float:
-        discretisation = self.body.discretisation
-        residual = (self.body.internal_forces(x)[0] - self.body.dead_load)[discretisation.pattern.free]
-        residual[discretisation.held] = 0.0
-        return float(np.linalg.norm(residual))
+        return float(np.linalg.norm(self.body.out_of_balance(self.body.internal_forces(x)[0])))
 
     def largest_step(self) -> float:
         return self.step_limit

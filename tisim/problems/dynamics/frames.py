@@ -43,10 +43,7 @@ class Frames:
 
     def keep(self, time: float, x: Array, dynamic: Array, min_jacobian: float, residual: float) -> None:
         """Append a state; dynamic (n, 3) [N]: internal, damping and inertia forces less the applied load."""
-        discretisation = self.body.discretisation
-        support = dynamic[discretisation.fixed].sum(axis=0) * discretisation.multiplicity
-        for axis in discretisation.mesh.symmetry:
-            support["xyz".index(axis)] = 0.0
+        support = self.body.discretisation.support_force(dynamic)
         self.time.append(time)
         self.positions.append(x.copy())
         self.support_force.append(support)
@@ -101,16 +98,8 @@ class Intervals:
 
 def static_residual(body: DiscretisedBody, force: Array) -> float:
     """Norm of the out-of-balance force at the free nodes relative to the load [-]; without a load, in [N]."""
-    discretisation = body.discretisation
-    residual = (force - body.dead_load)[discretisation.pattern.free]
-    residual[discretisation.held] = 0.0
-    size, load = float(np.linalg.norm(residual)), load_size(body)
+    size, load = float(np.linalg.norm(body.out_of_balance(force))), body.load_norm()
     return size / load if load > 0.0 else size
-
-
-def load_size(body: DiscretisedBody) -> float:
-    """Norm of the applied load at the free nodes [N]."""
-    return float(np.linalg.norm(body.dead_load[body.discretisation.pattern.free]))
 
 
 def at_rest(body: DiscretisedBody, x: Array, relative: float, kinetic: float, tolerance: float) -> bool:

@@ -36,7 +36,6 @@ from tisim.problems.dynamics.frames import (
     Intervals,
     Run,
     at_rest,
-    load_size,
     not_at_rest,
     static_residual,
 )
@@ -128,11 +127,11 @@ class ImplicitSystem:
         self._blocks, force, self.min_jacobian = self.body.stiffness(x, self._pressure)
         self._blocks *= 1.0 + c * s.stiffness_damping
         self._blocks += c * (c + s.mass_damping) * self._mass_blocks
-        residual = self._free(self.balance(self.state(x, force)))
+        residual = self.body.discretisation.free_components(self.balance(self.state(x, force)))
         if self.min_jacobian <= 0.0:
             residual[:] = np.nan
         # short steps amplify the rounding of positions, which bounds the residual that can be reached
-        diagonal = self._blocks[discretisation.pattern.indptr[:-1]][:, [0, 1, 2], [0, 1, 2]]
+        diagonal = discretisation.pattern.diagonal(self._blocks)
         noise = ROUNDING * float(np.linalg.norm(diagonal * x[discretisation.pattern.free]))
         return residual, self.scale + noise / (SHARPER * s.tolerance)
 
@@ -160,15 +159,11 @@ class ImplicitSystem:
 
     def residual_norm(self, x: Array) -> float:
         force, _ = self.body.internal_forces(x)
-        return float(np.linalg.norm(self._free(self.balance(self.state(x, force)))))
+        residual = self.body.discretisation.free_components(self.balance(self.state(x, force)))
+        return float(np.linalg.norm(residual))
 
     def largest_step(self) -> float:
         return np.inf
-
-    def _free(self, force: Array) -> Array:
-        residual = force[self.body.discretisation.pattern.free]
-        residual[self.body.discretisation.held] = 0.0
-        return residual
 
 
 def march(
@@ -195,7 +190,7 @@ def march(
     v = np.zeros_like(nodes) if velocity is None else velocity.copy()
     last = State(x - nodes, v, np.zeros_like(v), body.internal_forces(x)[0])
     # without a load, the residual is measured by the internal force at the release
-    scale = load_size(body) or float(np.linalg.norm(last.f)) or 1.0
+    scale = body.load_norm() or float(np.linalg.norm(last.f)) or 1.0
     system = ImplicitSystem(body, solver, scale)
     frames = Frames(body)
     before: tuple[State, float] | None = None

@@ -178,8 +178,7 @@ class CondensedBlock:
             self.factorisations += 1
             self._stale = False
         force = self._system.internal - split.near.body.internal_forces(x)[0]
-        left: Array = (force - split.body.dead_load)[discretisation.pattern.free]
-        left[discretisation.held] = 0.0
+        left = split.body.out_of_balance(force)
         passed_on = split.condensation.reduce(left).reshape(-1, 3)
         split.far.place(x, force[split.far.nodes] - passed_on)
         return left

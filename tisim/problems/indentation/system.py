@@ -317,12 +317,7 @@ class PokeSystem:
         # a floor on the scale of a millinewton, since there is no force before first contact
         floor = 1e-4 * self.body.moduli.shear_modulus * self.edge**2
         load = np.linalg.norm(self.report[:3]) + np.linalg.norm(self.body.dead_load) + floor
-        return self._free(total), float(load)
-
-    def _free(self, force: Array) -> Array:
-        residual: Array = (force - self.body.dead_load)[self.discretisation.pattern.free]
-        residual[self.discretisation.held] = 0.0
-        return residual
+        return self.body.out_of_balance(total), float(load)
 
     def step(self, residual: Array, *, forcing: float) -> Array:
         return self.linear.solve(self._blocks, -residual, tolerance=forcing, multiply=self.multiply)
@@ -346,7 +341,7 @@ class PokeSystem:
         )  # fmt: skip
         if self.drag is not None:
             total += self.drag.forces(x)
-        return float(np.linalg.norm(self._free(total)))
+        return float(np.linalg.norm(self.body.out_of_balance(total)))
 
     def rod_force(self) -> float:
         """Magnitude of the force on the rod in the last residual or linearisation [N]."""

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import arc_length
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.outlines._edges import edges
@@ -141,7 +142,7 @@ def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotogra
                 smooth_before=smooth[part],
                 smooth_after=None if smooth_later is None else smooth_later[part],
                 smooth_sd=sd[part],
-                along=_along(traced),
+                along=traced[0, 0] + arc_length(traced),
             )
             for f, part, traced in zip(
                 feet_of(p, result), parts, (p.outline.upper, p.outline.lower), strict=True
@@ -157,8 +158,3 @@ def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotogra
         )
         for i, photographs in by_trial.items()
     ]
-
-
-def _along(edge: Array) -> Array:
-    steps = np.linalg.norm(np.diff(edge, axis=0), axis=1)
-    return np.asarray(edge[0, 0] + np.concatenate([[0.0], np.cumsum(steps)]))

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import floor, log10
 from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.patches import Rectangle
 
 from calibration.diagnosis.drawing.outlines._drawn import DrawnTrial
-from calibration.pages import INK
+from calibration.pages import INK, round_magnification
 
 MEASURED, EXTENDED = "Blues", "Oranges"
 CLAMP = "#6B7480"
@@ -26,11 +25,7 @@ def magnification(beams: Sequence[DrawnTrial]) -> float:
     """Round magnification for all panels: the largest residual is drawn as up to _AWAY half heights."""
     half = min(0.5 * float(abs(b.body[0][0] - b.body[1][0]).max()) for b in beams)
     largest = max(b.largest for b in beams)
-    wanted = _AWAY * half / largest if largest > 0.0 else 1.0
-    if wanted <= 1.0:
-        return 1.0
-    power = 10.0 ** floor(log10(wanted))
-    return float(max(m * power for m in (1, 1.5, 2, 3, 5, 7) if m * power <= wanted))
+    return round_magnification(_AWAY * half / largest, (1, 1.5, 2, 3, 5, 7)) if largest > 0.0 else 1.0
 
 
 def clamps(axes: Any, beam: DrawnTrial, depth_mm: float) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tisim.view._view import Curve
 
-Told = tuple[str, float, str]
+Quantity = tuple[str, float, str]
 """Name, value and unit of a quantity."""
 
 MOST_FRAMES = 120
@@ -25,12 +25,12 @@ def thinned(count: int) -> tuple[str, ...]:
     return (f"{MOST_FRAMES} of {count} frames are shown.",) if count > MOST_FRAMES else ()
 
 
-def label(told: Sequence[Told]) -> str:
+def label(quantities: Sequence[Quantity]) -> str:
     """One line with the names, values and units of quantities."""
-    return " · ".join(f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in told)
+    return " · ".join(f"{name} {value:.4g} {unit}".rstrip() for name, value, unit in quantities)
 
 
-def curve(along: Sequence[Told], forces: Sequence[Told]) -> Curve:
+def curve(along: Sequence[Quantity], forces: Sequence[Quantity]) -> Curve:
     """Curve of the force over the load parameter, with one of each per frame."""
     return Curve(
         x=np.array([value for _, value, _ in along]),
