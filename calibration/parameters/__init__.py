@@ -39,6 +39,7 @@ _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
     "ogden": ogden,
     "arruda-boyce": arruda_boyce,
 }
+_OURS = {**_REGISTERED, **{kind.name: kind for kind in part_kinds()}}
 
 
 def register(law: str, make: Callable[[int], Parametrisation]) -> None:
@@ -52,6 +53,18 @@ def register(law: str, make: Callable[[int], Parametrisation]) -> None:
         Number of terms (1 for a law that is no series) -> `Parametrisation`.
     """
     _REGISTERED[law] = make
+
+
+def added_coordinates(law: str) -> Callable[[int], Parametrisation] | None:
+    """The function that `register` was given for a law; None for coordinates of the package."""
+    make = _REGISTERED.get(law)
+    return None if make is _OURS.get(law) else make
+
+
+def is_added_part(spec: str) -> bool:
+    """True for a part from outside the package, which other processes may not know."""
+    kind = part_kind(spec)
+    return kind is not _OURS.get(kind.name)
 
 
 def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
@@ -83,8 +96,10 @@ __all__ = [
     "PartCoordinates",
     "PartKind",
     "ProtocolWindow",
+    "added_coordinates",
     "bulk_ratio",
     "held_part",
+    "is_added_part",
     "long_time_parts",
     "parametrisation",
     "part_alternatives",

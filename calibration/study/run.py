@@ -22,7 +22,7 @@ from calibration.experiment import Experiment
 from calibration.inference import Generation, HistoryError
 from calibration.measurements._kinds import Kind, compared, is_added
 from calibration.measurements.outlines.setup import Setup
-from calibration.parameters import parametrisation, part_kind
+from calibration.parameters import added_coordinates, is_added_part, parametrisation, part_kind
 from calibration.progress import FitProgress, OnProgress
 from calibration.study import parts
 from calibration.study._store import FitStore, locked
@@ -100,6 +100,12 @@ class Task:
         found = compared(replace(self.experiment, trials=tuple(mine)))
         return [kind for kind, _ in found if is_added(kind)]
 
+    @property
+    def is_added(self) -> bool:
+        """True if it needs something from outside the package, which other processes may not know."""
+        law = laws.added(self.law) is not None or added_coordinates(self.law) is not None
+        return law or any(map(is_added_part, self.parts)) or bool(self.added_kinds)
+
     def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
         """Measurement models of the experiment that it fits."""
         law = parts.with_parts(
@@ -134,6 +140,7 @@ class Task:
             header["parts"] = list(self.parts)
         added = laws.added(self.law)
         own = [*(() if added is None else vars(added).values()), *(part_kind(s).make for s in self.parts)]
+        own += [added_coordinates(self.law)]
         own += [kind.load for kind in self.added_kinds]
         if any(callable(thing) and not is_own(thing) for thing in own):
             header["code"] = digest_of_code(*own)
@@ -267,8 +274,8 @@ def _run(
     def show() -> None:
         on_progress(_progress(waiting, ended, total))
 
-    # a law or kind of measurement of the caller's own is known to this process only
-    own = [t for t in waiting if laws.added(t.law) is not None or t.added_kinds]
+    # a law, part or kind of measurement of the caller's own is known to this process only
+    own = [t for t in waiting if t.is_added]
     spread = [t for t in waiting if t not in own]
     if min(workers, len(spread)) == 1:
         own, spread = waiting, []
