@@ -87,6 +87,16 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
     return _REGISTERED[law](terms) if law in _REGISTERED else two_moduli(law)
 
 
+def is_series(law: str) -> bool:
+    """True for a law whose coordinates, or label, depend on the number of its terms."""
+    try:
+        two = parametrisation(law, terms=2)
+    except ValueError:  # it has one term only
+        return False
+    one = parametrisation(law)
+    return (two.label, two.names) != (one.label, one.names)
+
+
 __all__ = [
     "OPTIONS",
     "Coordinate",
@@ -100,6 +110,7 @@ __all__ = [
     "bulk_ratio",
     "held_part",
     "is_added_part",
+    "is_series",
     "long_time_parts",
     "parametrisation",
     "part_alternatives",

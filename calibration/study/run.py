@@ -22,7 +22,13 @@ from calibration.experiment import Experiment
 from calibration.inference import Generation, HistoryError
 from calibration.measurements._kinds import Kind, compared, is_added
 from calibration.measurements.outlines.setup import Setup
-from calibration.parameters import added_coordinates, is_added_part, parametrisation, part_kind
+from calibration.parameters import (
+    added_coordinates,
+    is_added_part,
+    is_series,
+    parametrisation,
+    part_kind,
+)
 from calibration.progress import FitProgress, OnProgress
 from calibration.study import parts
 from calibration.study._store import FitStore, locked
@@ -176,7 +182,7 @@ def tasks_for(
             experiment=experiment,
             material=material,
             law=law,
-            terms=terms if law == "ogden" else 1,
+            terms=terms if is_series(law) else 1,
             options=options or FitOptions(),
             folder=folder,
             objective=objective,
