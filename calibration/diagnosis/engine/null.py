@@ -79,6 +79,11 @@ class Null:
         """Null distributions of the residuals (size,) of a model's fits, with its noise as it is now."""
         return cls(size, model.discrepancy_basis(), seed=seed, estimated=model.estimated_noise())
 
+    @property
+    def estimated(self) -> bool:
+        """True if some of the noise was estimated from the data."""
+        return self._freedom < inf
+
     def lack_of_fit(self, z: Array, jacobian: Array) -> LackOfFit:
         """Test residuals z (m,) of a fit with this Jacobian (m, n).
 
@@ -126,7 +131,7 @@ class Null:
         best = np.zeros(DRAWS)
         for part in np.array_split(np.arange(DRAWS), 8):  # in parts, to limit memory
             best[part] = screened.penalised(self.noise[part]).max(axis=1, initial=0.0)
-        return MaxImprovement(drawn=np.sort(best), estimated=self._freedom < inf)
+        return MaxImprovement(drawn=np.sort(best), estimated=self.estimated)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
