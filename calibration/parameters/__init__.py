@@ -6,7 +6,7 @@ modulus and K/G). `register` gives a law with further constants coordinates of i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from calibration.parameters import fibres as _fibres  # noqa: F401 - registers itself
 from calibration.parameters import mullins as _mullins  # noqa: F401 - registers itself
@@ -39,7 +39,7 @@ _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
     "ogden": ogden,
     "arruda-boyce": arruda_boyce,
 }
-_OURS = {**_REGISTERED, **{kind.name: kind for kind in part_kinds()}}
+_OURS: Mapping[str, object] = {**_REGISTERED, **{kind.name: kind for kind in part_kinds()}}
 
 
 def register(law: str, make: Callable[[int], Parametrisation]) -> None:
