@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.fit_request import FitRequest
+from calibration.parameters import is_series
 from calibration.progress import OnProgress
 from calibration.results import Fits
 from tisim import laws
@@ -78,6 +79,8 @@ def plan_fit(experiment: str | Path | Experiment, request: FitRequest) -> FitPla
     names = law_names(request.model)
     if not 1 <= request.terms <= 3:
         raise OptionError("terms", request.terms, "expected 1 to 3")
+    if request.terms > 1 and not any(map(is_series, names)):
+        raise OptionError("terms", request.terms, f"expected a law that is a series, got {', '.join(names)}")
     objective = request.objective
     if objective not in ("likelihood", "dice"):
         raise OptionError("objective", objective, "expected likelihood or dice")

@@ -107,6 +107,8 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     content = card([fit], experiment)
     content["provenance"] = _provenance(name, modulus, diagnosis, experiment, handed)
     content["fitted_to"]["kinds"] = [diagnosis.subject.kind]
+    if not diagnosis.fit.converged:
+        content["fitted_to"] |= {"status": "not converged", "why": diagnosis.fit.message}
     content["uncertainty"]["text"] = (
         "95 % interval of the shear modulus, nuisances and the amplitudes of all effects free, wider by the"
         " root of the reduced chi-square of the material's own records where that is above 1, and at least"

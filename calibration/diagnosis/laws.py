@@ -24,7 +24,7 @@ from calibration.errors import InputError
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import Source
 from calibration.measurements._state import State
-from calibration.parameters import parametrisation
+from calibration.parameters import is_series, parametrisation
 from calibration.progress import OnMessage
 
 AUTO = "auto"
@@ -114,6 +114,8 @@ def law_of(text: str) -> Law:
         parametrisation(name, terms=number)
     except ValueError as error:
         raise InputError(f"--law {text}: expected auto, or NAME or NAME:TERMS of a law: {error}") from error
+    if number > 1 and not is_series(name):
+        raise InputError(f"--law {text}: expected no number of terms, {name} is no series")
     return name, number
 
 

@@ -87,6 +87,14 @@ def is_added(kind: Kind) -> bool:
     return kind.name not in _OURS
 
 
+def true_kind(name: str) -> str:
+    """Current name of a kind, from its current or an earlier name. ValueError for a kind that is unknown."""
+    for kind in _KINDS.values():
+        if name in (kind.name, kind.old_name or kind.name):
+            return kind.name
+    raise ValueError(f"kind of measurement {name}: expected one of {', '.join(_KINDS)}")
+
+
 def kinds() -> tuple[str, ...]:
     """Names of all registered kinds."""
     return tuple(_KINDS)
@@ -103,9 +111,10 @@ def kind_of(experiment: Experiment, name: str | None = None) -> Kind:
     """
     there = [n for n, k in _KINDS.items() if k.holds(experiment)]
     if name is not None:
-        named = next((k for k in _KINDS.values() if name in (k.name, k.old_name)), None)
-        if named is None:
-            raise InputError(f"--kind {name}: expected one of {', '.join(_KINDS)}")
+        try:
+            named = _KINDS[true_kind(name)]
+        except ValueError:
+            raise InputError(f"--kind {name}: expected one of {', '.join(_KINDS)}") from None
         if named.name not in there:
             has = ", ".join(there) or "no trials"
             raise InputError(f"--kind {name}: the experiment has none; it has {has}")

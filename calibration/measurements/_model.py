@@ -8,7 +8,7 @@ inherited. `calibration.diagnosis.engine` searches these models for causes, `cal
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
 from typing import Any, ClassVar, Literal, Protocol, Self
 
@@ -19,6 +19,7 @@ from calibration.errors import OptionError
 from calibration.measurements._baseline import scatter_basis
 from calibration.measurements._effect import Candidate, HandedOn, Occurrence
 from calibration.measurements._folds import folds_of
+from calibration.measurements._noise_known import POINTS_PER_FREEDOM, Estimated
 from calibration.measurements._noisy_model import NoisyModel
 from calibration.measurements._state import State
 from calibration.parameters import Parameters
@@ -153,7 +154,33 @@ class MeasurementModel(NoisyModel):
 
     def noise_freedom(self) -> float:
         """Degrees of freedom of the noise's sd: few if estimated from few points, infinite if stated."""
-        return np.inf
+        found = self.estimated_noise()
+        rows = np.bincount(found.group[found.group >= 0], minlength=len(found.freedom))
+        doubt = float(np.sum(rows**2 / found.freedom))
+        return self.points**2 / doubt if doubt else np.inf
+
+    def estimated_noise(self) -> Estimated:
+        """Residuals whose sd was estimated from their own scatter: tests of residuals allow for its error."""
+        estimates = self._scatter_points()
+        there = list(dict.fromkeys(e for e in estimates if e is not None))
+        number = {e: n for n, e in enumerate(there)}
+        of_row = np.array([-1 if e is None else number[e] for e in estimates], dtype=np.intp)
+        prior = np.full(len(self.baseline.prior), -1, dtype=np.intp)
+        return Estimated(
+            group=np.concatenate([of_row[self.noise.used], prior]),
+            freedom=np.array([points for _, points in there]) / POINTS_PER_FREEDOM,
+        )
+
+    def _scatter_points(self) -> Sequence[tuple[Hashable, float] | None]:
+        """For each row the estimate that its sd is of, and the number of points from which it was made.
+
+        None for a row whose sd is stated, or assumed. A record has one estimate.
+        """
+        each: list[tuple[Hashable, float] | None] = []
+        for r in self.records:
+            points = self.from_data.get(str(r.name), getattr(r, "scatter_points", 0))
+            each.append((str(r.name), float(points)) if points else None)
+        return [each[k] for k in self.row_record]
 
     # -- lack of fit, folds, scores --
 

@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 Source = Literal["stated", "data"]
 
 FEWEST = 12  # least number of third differences for an estimate of a record's scatter
+# Points of a curve per degree of freedom of the noise that its scatter shows: it is the median of residuals
+# from neighbours, which are correlated (of 1500 curves of 60 to 300 points 3.9 to 4.2).
+POINTS_PER_FREEDOM = 4.0
 FACTOR = 2.0  # ratio between stated and observed noise from which they contradict each other
 _WEIGHTS = np.array([1.0, -3.0, 3.0, -1.0])  # third difference: zero for a parabola
 
@@ -139,6 +142,30 @@ class NoiseKnown:
 
 
 STATED = NoiseKnown()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Estimated:
+    """Rows whose standard deviation was estimated from their own scatter, in groups of one estimate each.
+
+    Attributes
+    ----------
+    group : group of each residual, shape (m,); -1 where the noise is stated.
+    freedom : degrees of freedom of the estimate of each group, shape (groups,).
+    """
+
+    group: NDArray[np.intp]
+    freedom: Array
+
+    @property
+    def least(self) -> float:
+        """Degrees of freedom of the most uncertain estimate; inf if all noise is stated."""
+        return float(self.freedom.min(initial=inf))
+
+    def over_estimate(self, draws: int, rng: np.random.Generator) -> Array:
+        """Noise over what it is estimated as: sqrt(nu / chi2_nu) of each residual, shape (draws, m)."""
+        each = np.sqrt(self.freedom / rng.chisquare(self.freedom, (draws, len(self.freedom))))
+        return np.hstack([each, np.ones((draws, 1))])[:, self.group]
 
 
 def roughness(values: Array) -> tuple[float, int]:

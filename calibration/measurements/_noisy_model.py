@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -16,7 +17,14 @@ from numpy.typing import NDArray
 
 from calibration.measurements._forward_model import ForwardModel
 from calibration.measurements._layers import Curve, Layers, deviations, layers_of
-from calibration.measurements._noise_known import FEWEST, NoiseKnown, PointNoise, Source, roughness
+from calibration.measurements._noise_known import (
+    FEWEST,
+    POINTS_PER_FREEDOM,
+    NoiseKnown,
+    PointNoise,
+    Source,
+    roughness,
+)
 from calibration.measurements._state import State
 
 Array = NDArray[np.float64]
@@ -54,9 +62,12 @@ class NoisyModel(ForwardModel):
     Attributes
     ----------
     unit : unit of `distance_rms` in files, and the number of these units per SI unit.
+    from_data : number of points from whose scatter the noise was taken in place of what the lab states, by
+        the record's name.
     """
 
     unit: ClassVar[tuple[str, float]]
+    from_data: Mapping[str, int] = MappingProxyType({})
 
     @abstractmethod
     def start(self) -> Array:
@@ -135,8 +146,8 @@ class NoisyModel(ForwardModel):
             return known
         factors = {p.record: p.factor for p in points if p.contradicts}
         self._rescale(factors, points)
-        # a median of third differences tells a third of what as many independent points would
-        dof = float(np.median([p.points for p in points])) / 3.0 if factors else known.dof
+        self.from_data = {p.record: p.points for p in points if p.contradicts}
+        dof = float(np.median([p.points for p in points])) / POINTS_PER_FREEDOM if factors else known.dof
         return replace(known, source="data", dof=dof)
 
     def _shown_together(self, points: Sequence[PointNoise]) -> dict[str, float]:

@@ -6,7 +6,7 @@ modulus and K/G). `register` gives a law with further constants coordinates of i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from calibration.parameters import fibres as _fibres  # noqa: F401 - registers itself
 from calibration.parameters import mullins as _mullins  # noqa: F401 - registers itself
@@ -39,6 +39,7 @@ _REGISTERED: dict[str, Callable[[int], Parametrisation]] = {
     "ogden": ogden,
     "arruda-boyce": arruda_boyce,
 }
+_OURS: Mapping[str, object] = {**_REGISTERED, **{kind.name: kind for kind in part_kinds()}}
 
 
 def register(law: str, make: Callable[[int], Parametrisation]) -> None:
@@ -52,6 +53,18 @@ def register(law: str, make: Callable[[int], Parametrisation]) -> None:
         Number of terms (1 for a law that is no series) -> `Parametrisation`.
     """
     _REGISTERED[law] = make
+
+
+def added_coordinates(law: str) -> Callable[[int], Parametrisation] | None:
+    """The function that `register` was given for a law; None for coordinates of the package."""
+    make = _REGISTERED.get(law)
+    return None if make is _OURS.get(law) else make
+
+
+def is_added_part(spec: str) -> bool:
+    """True for a part from outside the package, which other processes may not know."""
+    kind = part_kind(spec)
+    return kind is not _OURS.get(kind.name)
 
 
 def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
@@ -74,6 +87,16 @@ def parametrisation(law: str, *, terms: int = 1) -> Parametrisation:
     return _REGISTERED[law](terms) if law in _REGISTERED else two_moduli(law)
 
 
+def is_series(law: str) -> bool:
+    """True for a law whose coordinates, or label, depend on the number of its terms."""
+    try:
+        two = parametrisation(law, terms=2)
+    except ValueError:  # it has one term only
+        return False
+    one = parametrisation(law)
+    return (two.label, two.names) != (one.label, one.names)
+
+
 __all__ = [
     "OPTIONS",
     "Coordinate",
@@ -83,8 +106,11 @@ __all__ = [
     "PartCoordinates",
     "PartKind",
     "ProtocolWindow",
+    "added_coordinates",
     "bulk_ratio",
     "held_part",
+    "is_added_part",
+    "is_series",
     "long_time_parts",
     "parametrisation",
     "part_alternatives",

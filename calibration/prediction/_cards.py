@@ -91,11 +91,16 @@ _FITTED_TO = re.compile(
 
 
 class FittedTo(_Lenient):
-    """Experiment that a card was fitted to, and kinds of measurement; all of it where none are stated."""
+    """Experiment that a card was fitted to, and kinds of measurement; all of it where none are stated.
+
+    status, why : of a fit that is no calibration (lack of fit, not converged).
+    """
 
     experiment: str
     sha256: str
     kinds: tuple[str, ...] = ()
+    status: str = ""
+    why: str = ""
 
 
 class _Baseline(_Lenient):
@@ -212,6 +217,12 @@ def extended_model(card: CardFile) -> CardModel:
     parameters: Parameters = dict(card.laws[name])
     laws.get(name).check(parameters)
     notes = []
+    if card.fitted_to is not None and card.fitted_to.status:
+        why = f" ({card.fitted_to.why})" if card.fitted_to.why else ""
+        notes.append(
+            f"the card of {card.material} is of a fit that is no calibration, {card.fitted_to.status}{why}:"
+            " what its law lacks is in no interval"
+        )
     high = card.uncertainty.shear_modulus_high
     if high is None:
         notes.append(f"the card of {card.material} does not state how well its modulus is known")

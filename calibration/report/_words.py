@@ -62,6 +62,10 @@ def verdict(results: Sequence[Calibration]) -> str:
         return f"{material}: no result, since no law has a fit ({counts})."
     chosen = found.chosen
     parts = [f"{material}: shear modulus {shear(chosen)} kPa by {chosen.label}"]
+    if any(
+        e.name == "shear_modulus" and e.seen in ("not identified", "at a bound") for e in chosen.estimates
+    ):
+        parts.append("the data do not determine it: its bounds in the search do")
     if chosen.status == "stopped":
         parts.append("the best so far of a search that was stopped, without error bars")
     else:

@@ -87,7 +87,10 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "mixture": f"softener ratio {ratio:g}" if ratio is not None else chosen.material,
         "derived": False,
         "provenance": _provenance(results, chosen, by_law, filled, experiment),
-        "fitted_to": fitted_to(experiment, chosen.material, objective=chosen.objective),
+        "fitted_to": {
+            **fitted_to(experiment, chosen.material, objective=chosen.objective),
+            **({} if chosen.status == "converged" else {"status": chosen.status, "why": _why(chosen)}),
+        },
         "uncertainty": {
             "shear_modulus_low": low,
             "shear_modulus_high": high,

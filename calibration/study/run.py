@@ -25,7 +25,6 @@ from calibration.study.calibrate import best_so_far, calibrate
 from calibration.study.calibration import Calibration
 from calibration.study.measurements import OnSetup
 from calibration.study.tasks import Task
-from tisim import laws
 from tisim.parallel.threads import ONE_THREAD
 
 log = logging.getLogger(__name__)
@@ -81,8 +80,8 @@ def _run(
     def show() -> None:
         on_progress(_progress(waiting, ended, total))
 
-    # a law or kind of measurement of the caller's own is known to this process only
-    own = [t for t in waiting if laws.added(t.law) is not None or t.added_kinds]
+    # a law, part or kind of measurement of the caller's own is known to this process only
+    own = [t for t in waiting if t.is_added]
     spread = [t for t in waiting if t not in own]
     if min(workers, len(spread)) == 1:
         own, spread = waiting, []

@@ -13,7 +13,13 @@ import numpy as np
 from calibration.experiment import Experiment
 from calibration.measurements._kinds import Kind, compared, is_added
 from calibration.measurements.outlines.setup import Setup
-from calibration.parameters import parametrisation, part_kind
+from calibration.parameters import (
+    added_coordinates,
+    is_added_part,
+    is_series,
+    parametrisation,
+    part_kind,
+)
 from calibration.study import parts
 from calibration.study._store import FitStore
 from calibration.study.calibrate import FitOptions
@@ -87,6 +93,12 @@ class Task:
         found = compared(replace(self.experiment, trials=tuple(mine)))
         return [kind for kind, _ in found if is_added(kind)]
 
+    @property
+    def is_added(self) -> bool:
+        """True if it needs something from outside the package, which other processes may not know."""
+        law = laws.added(self.law) is not None or added_coordinates(self.law) is not None
+        return law or any(map(is_added_part, self.parts)) or bool(self.added_kinds)
+
     def measurements(self, experiment: Experiment, *, workers: int | None) -> Measurements:
         """Measurement models of the experiment that it fits."""
         law = parts.with_parts(
@@ -121,6 +133,7 @@ class Task:
             header["parts"] = list(self.parts)
         added = laws.added(self.law)
         own = [*(() if added is None else vars(added).values()), *(part_kind(s).make for s in self.parts)]
+        own += [added_coordinates(self.law)]
         own += [kind.load for kind in self.added_kinds]
         if any(callable(thing) and not is_own(thing) for thing in own):
             header["code"] = digest_of_code(*own)
@@ -156,7 +169,7 @@ def tasks_for(
             experiment=experiment,
             material=material,
             law=law,
-            terms=terms if law == "ogden" else 1,
+            terms=terms if is_series(law) else 1,
             options=options or FitOptions(),
             folder=folder,
             objective=objective,

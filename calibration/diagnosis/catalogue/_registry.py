@@ -30,7 +30,13 @@ PARAMETERS: dict[str, dict[str, str]] = {
 
 
 def register(kind: str, effect: EffectModel) -> None:
-    """Add an effect to a kind of measurement. ValueError if the kind has an effect of that name."""
+    """Add an effect to a kind of measurement, by its current or an earlier name.
+
+    ValueError if there is no such kind (register one's own first), or it has an effect of that name.
+    """
+    from calibration.measurements._kinds import true_kind
+
+    kind = true_kind(kind)
     if effect.name in effects_of(kind):
         raise ValueError(f"effect {effect.name}: {kind} has one of that name")
     _ADDED.setdefault(kind, {})[effect.name] = effect

@@ -216,7 +216,7 @@ def _refined(model: MeasurementModel, finding: Finding, rules: Rules) -> tuple[E
         model.update_nuisances(again.fit.state)
         if model.noise is noise_there and again.fit.converged:  # it would be the same
             return again, fit(model, State(u=finding.baseline.state.u), tolerance=AS_FITTED), null
-        null = Null(len(again.fit.z), model.discrepancy_basis(), seed=rules.seed)
+        null = Null.of(model, len(again.fit.z), seed=rules.seed)
         before = again.fit.state.amplitudes
         taken = explain(model, again.fit, again.candidates, list(before.values()), null)
         assert taken is not None, "there was an answer when it was found"

@@ -110,7 +110,7 @@ def search(
     null = (
         before.null
         if before is not None and _same(before.baseline, baseline)
-        else Null(len(linear.z), model.discrepancy_basis(), seed=rules.seed)
+        else Null.of(model, len(linear.z), seed=rules.seed)
     )
     lack_of_fit = null.lack_of_fit(linear.z, linear.by_u)
     improvement = null.max_improvement(screened)

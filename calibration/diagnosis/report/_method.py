@@ -22,10 +22,13 @@ def false_alarms(diagnosis: Diagnosis) -> str:
     single = [e for e in finding.explanations if len(e.candidates) == 1]
     if not single:
         return f"{limits} No cause explained enough to be fitted in the simulator."
+    chance = tiny(finding.p_value)
+    if noise.estimated:
+        chance = p_text(finding.p_value, len(finding.null.noise))
     gain = max(finding.baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty for e in single)
     return (
         f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, after the"
-        f" penalty for the choice of its position; the p-value is {tiny(finding.p_value)}."
+        f" penalty for the choice of its position; the p-value is {chance}."
     )
 
 
@@ -94,8 +97,13 @@ def method(diagnosis: Diagnosis, model: MeasurementModel, noise: str) -> list[st
         f" {noise}".strip(),
         f"Null distribution: {draws} draws of that noise, fitted to first order with the baseline's free"
         f" coordinates ({len(model.names)}), in place of tabulated values of χ². A p-value below"
-        f" {significant(1.0 / (draws + 1), 2)} cannot be counted: it is given as a bound, and for the best"
-        " cause extrapolated from the tail of the draws.",
+        f" {significant(1.0 / (draws + 1), 2)} cannot be counted: it is given as a bound"
+        + (
+            ". Where the noise was estimated from the scatter of a record, each draw has an error of that"
+            " estimate."
+            if finding.null.estimated
+            else ", and for the best cause extrapolated from the tail of the draws."
+        ),
         f"Screening: {len(effects)} effects at {len(candidates)} candidate positions, each an amplitude"
         " in the simulator,"
         f" to first order; {len(finding.explanations)} sets of causes were then fitted in the simulator."

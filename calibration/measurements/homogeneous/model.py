@@ -22,6 +22,7 @@ from calibration.measurements._folds import fifths
 from calibration.measurements._memory import Memory
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
+from calibration.measurements._noise_known import POINTS_PER_FREEDOM
 from calibration.measurements._noisy_model import Shown
 from calibration.measurements._records import listed, over_time
 from calibration.measurements._state import State
@@ -410,9 +411,25 @@ class HomogeneousModel(MeasurementModel):
         return np.asarray(self.records[k].branch, dtype=np.int64)
 
     def noise_freedom(self) -> float:
-        # the median of the scatter about a curve tells a third of what as many independent points would
-        doubt = sum(3.0 * r.points**2 / r.scatter_points for r in self.records if r.scatter_points)
-        return float(sum(r.points for r in self.records) ** 2 / doubt) if doubt else np.inf
+        doubt = sum(r.points**2 / r.scatter_points for r in self.records if r.scatter_points)
+        whole = sum(r.points for r in self.records) ** 2
+        return float(whole / doubt) / POINTS_PER_FREEDOM if doubt else np.inf
+
+    def _scatter_points(self) -> list[tuple[Hashable, float] | None]:
+        """Each stroke has an estimate of its own; one that is assumed for few points is taken as it is."""
+        found = list(super()._scatter_points())
+        for k, r in enumerate(self.records):
+            if r.name in self.from_data or not r.scatter_points:
+                continue
+            used = self.noise.used[self.row_record == k]
+            share = r.scatter_points / max(1, np.count_nonzero(used))
+            branch = self.branch(k)
+            each = {b: share * np.count_nonzero(used & (branch == b)) for b in np.unique(branch)}
+            for row, b in zip(np.flatnonzero(self.row_record == k), branch, strict=True):
+                found[row] = (
+                    None if r.scatter_points == ASSUMED or not each[b] else ((r.name, int(b)), each[b])
+                )
+        return found
 
     def shortcomings(self) -> list[str]:
         few = [r for r in self.records if r.scatter_points == ASSUMED]

@@ -13,7 +13,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial, specimen_of
 from calibration.measurements._course import bins_over_time
 from calibration.measurements._records import bins
-from calibration.measurements.homogeneous import unstated_sd
+from calibration.measurements.homogeneous import SMALLEST_RELATIVE, unstated_sd
 from calibration.measurements.indentation._course import Course, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
@@ -73,6 +73,8 @@ class Record:
     cycle_peak : largest depth of its cycle up to each point [m].
     unloaded : 1 after the first unloading at this contact point, 0 before.
     estimated : True if the lab states no error of the force.
+    scatter_points : number of samples from whose scatter it comes; 0 if it is stated, or the least that is
+        assumed.
     ranges : see `calibration.measurements._model.Record`; the depth is as recorded by the lab.
     course : loading history, for viscoelastic materials; None otherwise.
     """
@@ -99,6 +101,7 @@ class Record:
     cycle_peak: Array
     unloaded: Array
     estimated: bool
+    scatter_points: int
     ranges: Mapping[str, tuple[float, float]]
     course: Course | None = None
 
@@ -275,6 +278,13 @@ def _own_sd(trial: PokeTrial, force: Array, count: Array) -> Array:
     return unstated_sd(trial.record.time, trial.record.force, force, count)
 
 
+def _scatter_points(trial: PokeTrial, own_sd: Array) -> int:
+    """See `Record.scatter_points`."""
+    force = trial.record.force
+    least = SMALLEST_RELATIVE * float(np.abs(force).max())
+    return len(force) if trial.force_sd is None and float(np.median(own_sd)) > 1.01 * least else 0
+
+
 def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: bool) -> Record:
     raw = trial.record
     phases = with_holds(trial, phases_of(trial)) if courses else phases_of(trial)
@@ -331,6 +341,7 @@ def _record(trial: PokeTrial, geometry: Geometry, before: float, *, courses: boo
         labels=tuple(p.label for p in phases),
         degrees=degrees,
         estimated=trial.force_sd is None,
+        scatter_points=_scatter_points(trial, whole["own_sd"]),
         ranges={
             "depth_mm": (1e3 * float(raw.depth.min()), 1e3 * float(raw.depth.max())),
             "time_s": (float(raw.time[0]), float(raw.time[-1])),

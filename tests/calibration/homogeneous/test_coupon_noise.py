@@ -11,6 +11,7 @@ from _folders import coupon_entry, write_experiment
 
 import calibration
 from calibration.experiment.model import CouponTrial, Experiment, MaterialBelief
+from calibration.measurements._noise_known import POINTS_PER_FREEDOM
 from calibration.measurements.homogeneous._scatter import grows, slope
 from calibration.parameters import parametrisation
 from calibration.study import Calibration, FitOptions, calibrate, measurements
@@ -72,7 +73,7 @@ def test_noise_that_is_estimated_from_few_points_is_not_certain() -> None:
         found = fitted(trial)
         freedoms.add(found.noise_freedom)
         lacking += found.status != "converged"
-    assert freedoms == {10.0}
+    assert freedoms == {30.0 / POINTS_PER_FREEDOM}
     assert lacking <= 1
     stiffening = neo_hookean(stretch) * (1.0 + 2.0 * (stretch - 1.0) ** 2)
     noise = 50.0 * np.random.default_rng(5).standard_normal(30)

@@ -87,6 +87,15 @@ def made(*trials: object) -> Experiment:
     )
 
 
+def test_an_effect_of_an_unknown_kind_is_refused() -> None:
+    """It was kept, and never looked for."""
+    with pytest.raises(ValueError, match="kind of measurement homogenous: expected one of outlines, homog"):
+        catalogue.register("homogenous", WARMING)
+    catalogue.register("coupons", WARMING)  # an earlier name
+    assert "warming" in catalogue.effects_of("homogeneous")
+    catalogue.unregister("homogeneous", "warming")
+
+
 @pytest.mark.usefixtures("warming")
 def test_an_effect_of_ones_own_is_found() -> None:
     found = diagnose(model_of(pulled(0.2)), gain=False)

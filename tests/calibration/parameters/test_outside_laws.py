@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from made_experiment import experiment
 
 import calibration.parameters as parameters
-from calibration.fit_plan import law_names
-from calibration.parameters import Coordinate, Parametrisation, bulk_ratio, parametrisation, shear_modulus
+from calibration.diagnosis.laws import law_of
+from calibration.errors import InputError, OptionError
+from calibration.fit_plan import law_names, plan_fit
+from calibration.fit_request import FitRequest
+from calibration.parameters import (
+    Coordinate,
+    Parametrisation,
+    bulk_ratio,
+    is_series,
+    parametrisation,
+    shear_modulus,
+)
+from calibration.study import tasks_for
 from tisim import laws
 
 
@@ -52,6 +66,21 @@ def test_coordinates_of_its_own(twin: str, monkeypatch: pytest.MonkeyPatch) -> N
     parameters.register(twin, make)
     p = parametrisation(twin, terms=2)
     assert (p.label, p.names) == ("twin-2", ("shear_modulus", "bulk_ratio", "skew"))
+    tasks = tasks_for(
+        experiment(), law_names=[twin, "neo-hookean"], materials=["A"], folder=Path("fits"), terms=2
+    )
+    assert [(t.terms, t.label) for t in tasks] == [(2, "twin-2"), (1, "neo-hookean")]
+
+
+def test_a_number_of_terms_that_no_law_takes_is_refused(tmp_path: Path) -> None:
+    """It was left out of account, in fits as in a diagnosis."""
+    assert [is_series(law) for law in ("ogden", "neo-hookean", "mooney-rivlin")] == [True, False, False]
+    request = FitRequest(out=tmp_path, model="neo-hookean,mooney-rivlin", terms=2)
+    with pytest.raises(OptionError, match="expected a law that is a series, got neo-hookean, mooney-rivlin"):
+        plan_fit(experiment(), request)
+    with pytest.raises(InputError, match="neo-hookean:3: expected no number of terms"):
+        law_of("neo-hookean:3")
+    assert law_of("ogden:3") == ("ogden", 3)
 
 
 def test_a_law_that_is_nowhere() -> None:

@@ -117,3 +117,29 @@ def test_a_covariance_of_another_material_is_refused(
     data = experiment(tmp_path / "data", AHEAD, 0.005, np.random.default_rng(12))
     with pytest.raises(InputError, match=words):
         calibration.predict(data, cards=tmp_path / "S0.yaml", workers=1)
+
+
+def test_a_lack_of_fit_is_said_where_its_card_predicts(tmp_path: Path) -> None:
+    """A prediction that was off by 100 times its intervals had no word on it."""
+    stretch = np.linspace(1.0, 1.8, 30)
+    stiffening = {
+        f"{k}.csv": {
+            "stretch": stretch,
+            "nominal_stress_kPa": 30.0 * (stretch - stretch**-2) * (1.0 + k + stretch**3),
+        }
+        for k in range(2)
+    }
+    for k, table in stiffening.items():
+        write_experiment(tmp_path / k, [coupon_entry("pull", k, stretch_sd=0.0)], tables={k: table})
+    fits = calibration.fit(tmp_path / "0.csv", model="neo-hookean", generations=5, workers=1)
+    assert [r.status for r in fits] == ["lack of fit"]
+    (path,) = fits.write_cards(tmp_path / "cards")
+    assert load_card("S0", path.parent).fitted_to["status"] == "lack of fit"  # type: ignore[index]
+    notes = calibration.predict(tmp_path / "1.csv", path.parent, workers=1).prediction.notes
+    assert any("no calibration, lack of fit (reduced chi-square" in n for n in notes), notes
+    content = yaml.safe_load(path.read_text())
+    del content["fitted_to"]["status"], content["fitted_to"]["why"]
+    path.write_text(yaml.safe_dump(content))
+    assert not any(
+        "lack" in n for n in calibration.predict(tmp_path / "1.csv", path, workers=1).prediction.notes
+    )

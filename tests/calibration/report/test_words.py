@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -95,6 +96,14 @@ def test_misfit_shrinks_differences() -> None:
 def test_one_law() -> None:
     assert verdict([calibration()]).endswith("by neo-hookean; no other law was tried.")
     assert "of 1 other laws none has a fit" in verdict([calibration(), failed("ogden")])
+
+
+@pytest.mark.parametrize("seen", ["not identified", "at a bound"])
+def test_a_modulus_that_the_data_do_not_determine(seen: Any) -> None:
+    """A record at rest was calibrated to "0 ± 3 kPa", as if that were measured."""
+    unseen = calibration(estimates=(replace(estimate("shear_modulus"), seen=seen),))
+    assert "100.0 ± 0.7 kPa by neo-hookean; the data do not determine it" in verdict([unseen])
+    assert "determine it" not in verdict([calibration(estimates=(estimate("shear_modulus"),))])
 
 
 def test_fits_that_are_not_whole() -> None:
