@@ -183,6 +183,7 @@ def build_dataset(
 def _written_so_far(plan: Plan, target: Path, staging: Staging, on_progress: OnProgress | None) -> Built:
     """Write a store of the staged results; InputError if there are none."""
     damaged = set_damaged_aside(staging, plan.pokes)
+    _derive(plan, staging, staging.stage)
     done = len(staging.finished())
     missing = len(plan.pokes) - done
     if on_progress is not None and done:
@@ -330,10 +331,7 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
         if on_progress is not None:
             on_progress(BuildProgress(len(done) + simulated, failed, total, staging, outcome))
 
-    for index in sorted(done & set(derived)):
-        with staging.opened(index) as arrays:
-            for poke in derived[index]:
-                keep(in_proportion(dict(arrays), poke))
+    _derive(plan, staging, keep)
     own = [poke for poke in in_turns(plan) if poke.index not in done and not poke.derived]
     if not own:
         return simulated
@@ -349,6 +347,15 @@ def _simulate(plan: Plan, staging: Staging, means: _Means, on_progress: OnProgre
                 else:
                     keep(replace(outcome, index=poke.index, wall=0.0, core=0.0))
     return simulated
+
+
+def _derive(plan: Plan, staging: Staging, keep: Callable[[Outcome], None]) -> None:
+    """Pass to `keep` the missing pokes whose solve is staged: a kill can come between it and them."""
+    done = staging.finished()
+    for poke in plan.pokes:
+        if poke.derived and poke.index not in done and poke.solved_as in done:
+            with staging.opened(poke.solved_as) as arrays:
+                keep(in_proportion(dict(arrays), poke))
 
 
 def in_turns(plan: Plan) -> list[PlannedPoke]:

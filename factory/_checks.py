@@ -207,7 +207,8 @@ def one_solve(data: Dataset) -> list[str]:
     if "solved_as" not in table:
         return []
     faults = []
-    for index in np.flatnonzero(table["solved_as"] != np.arange(data.n_pokes)).tolist():
+    derived = table["done"] & (table["solved_as"] != np.arange(data.n_pokes))
+    for index in np.flatnonzero(derived).tolist():
         other, factor = int(table["solved_as"][index]), float(table["force_factor"][index])
         if not (0 <= other < index and table["solved_as"][other] == other):
             faults.append(f"poke {index}: takes the solve of poke {other}, which has none of its own")

@@ -10,6 +10,7 @@ course:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
@@ -99,6 +100,12 @@ def check_pieces(pieces: Sequence[RampRecipe | HoldRecipe], depth_mm: float) -> 
         deepest = max(deepest, now)
     if pieces and deepest != depth_mm:
         raise ValueError(f"depth_mm: expected the course's largest depth of {deepest:g}, got {depth_mm:g}")
+
+
+def travel(pieces: Sequence[RampRecipe | HoldRecipe], depth_mm: float) -> float:
+    """Way of the rod [mm]: the sum of a course's ramps, or the depth without a course."""
+    ends = [0.0, *(piece.to_mm for piece in pieces if isinstance(piece, RampRecipe))]
+    return sum(abs(b - a) for a, b in pairwise(ends)) if pieces else depth_mm
 
 
 def draw_course(

@@ -18,7 +18,7 @@ from pydantic import (
 )
 
 from factory._bundled import recipe_names, shipped_folder
-from factory._course import Piece, check_pieces
+from factory._course import Piece, check_pieces, travel
 from factory._errors import InputError
 from factory._input import Strict, read_yaml, validation_sentence
 from factory._shapes import (
@@ -39,6 +39,7 @@ from tisim.mesh.indentation import CLEARANCE
 Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
 
 _MM = 1e-3
+MOST_FRAMES = 10_000  # of one poke in its ramps; a frame takes some 30 kB in memory
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
 
@@ -125,6 +126,12 @@ class Protocol(Strict):
     @model_validator(mode="after")
     def _driven(self) -> Self:
         check_pieces(self.course, self.depth_mm)
+        least = travel(self.course, self.depth_mm) / MOST_FRAMES
+        if self.frame_spacing_mm < least:
+            raise ValueError(
+                f"frame_spacing_mm: expected at least {least:.3g}, which is {MOST_FRAMES} frames a poke, "
+                f"got {self.frame_spacing_mm:g}"
+            )
         return self
 
     @model_validator(mode="after")

@@ -160,8 +160,9 @@ def _frames(result: Result, wanted: Sequence[int]) -> Iterator[Fields]:
                 body.begin(now - before)
                 body.accept(x)
                 memory, before = body, now
-            if frame in wanted:
-                yield fields_at(body, x, frame)
+            found = fields_at(body, x, frame) if frame in wanted else None
+        if found is not None:  # outside: the caller may keep this generator, and solve something else
+            yield found
 
 
 def fields_at(body: DiscretisedBody, x: Array, frame: int = -1) -> Fields:

@@ -79,6 +79,8 @@ def simulate(
     solution of a beam depends on its batch by less than the solver's tolerance (and 1e-4 of the angles of
     compliant clamps, and of the deflection of a beam with a course, in whose history errors add up).
 
+    Calls from several threads of one process wait for one another, where they solve in that process.
+
     Memory grows linearly with the batch: a result takes 24 bytes per node and frame (default beam of 100 mm:
     1,015 nodes, 26 kB; poke of 3,500 nodes and 20 frames: 1.7 MB) and shares its mesh with the results of the
     same beam. In addition each process holds the matrices of one scene (beam: 10 MB) and the data of the last

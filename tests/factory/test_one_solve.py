@@ -11,6 +11,8 @@ import pytest
 import zarr
 
 from factory import open_dataset, verify_dataset
+from factory._build import build_dataset
+from factory._checks import one_solve as one_solve_faults
 from factory._similar import modulus_ratio, one_solve, scale_with_modulus
 from factory._staging import Staging
 from factory.plan import Plan
@@ -140,3 +142,36 @@ def test_what_a_stopped_build_has_solved_is_not_solved_again(
     assert open_dataset(target).attributes["fingerprint"] == open_dataset(reference).attributes["fingerprint"]
     for name in ("rod_force", "grid_displacement", "done"):
         np.testing.assert_array_equal(open_dataset(target).read(name), open_dataset(reference).read(name))
+
+
+def test_a_partial_store_has_the_pokes_of_each_solve_that_it_has(
+    quick: Plan, standin_build: Builder, tmp_path: Path
+) -> None:
+    """A build that is killed between a solve and the pokes that take it, then --partial."""
+
+    def stop(state: object) -> None:
+        if state.outcome is not None:  # type: ignore[attr-defined]
+            raise KeyboardInterrupt
+
+    target = tmp_path / "a.zarr"
+    with pytest.raises(KeyboardInterrupt):
+        standin_build(quick, target, on_progress=stop)
+    assert Staging(target).finished() == {0}
+    taken = {p.index for p in quick.pokes if p.solved_as == 0}
+    build_dataset(quick, target, partial=True)
+    data = open_dataset(target)
+    assert set(np.flatnonzero(data.table["done"])) == {0, *taken}
+    assert data.attributes["pokes_done"] == 1 + len(taken) == 3
+    assert verify_dataset(target).faults["solves taken over"] == []
+
+
+def test_a_poke_that_is_not_done_is_no_fault_of_its_solve(
+    quick: Plan, standin_build: Builder, tmp_path: Path
+) -> None:
+    target = tmp_path / "a.zarr"
+    standin_build(quick, target)
+    data = open_dataset(target)
+    index = int(np.flatnonzero(data.table["solved_as"] != np.arange(data.n_pokes))[-1])
+    data.table["done"][index] = False
+    data.table["frame_count"][index] = 0
+    assert one_solve_faults(data) == []

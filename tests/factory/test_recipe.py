@@ -191,6 +191,12 @@ BAD: list[tuple[str, str, str]] = [
         "leaves less than",
         "",
     ),
+    # frames that no memory holds
+    (
+        TINY.replace("frame_spacing_mm: 1", "frame_spacing_mm: 1e-9"),
+        "key protocol: frame_spacing_mm: expected at least 0.003, which is 10000 frames a poke",
+        "got 1e-09",
+    ),
     # YAML beyond limits
     (TINY + "seed: 4\n", "line 14: key seed is given twice (first at line 4)", ""),
     ("yes: 1\ntrue: 2\n", "line 2: key true is given twice (first at line 1)", ""),

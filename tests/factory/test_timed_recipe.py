@@ -108,6 +108,11 @@ def test_bad_parts_of_a_card_in_one_sentence(text: str, sentence: str, tmp_path:
         ("- {to_mm: 30, speed_mm_per_s: [1, 20]}\n", "- {hold_s: 2}\n", "course.0: expected a ramp"),
         ("{to_mm: 20, ", "{to_mm: 10, ", "course.3.to_mm: expected another depth than 10"),
         ("depth_mm: 30", "depth_mm: 25", "depth_mm: expected the course's largest depth of 30, got 25"),
+        (
+            "frame_spacing_mm: 10",
+            "frame_spacing_mm: 1e-9",
+            "frame_spacing_mm: expected at least 0.008, which",
+        ),
         ("- {hold_s: 8, frames: 3}", "- 8", "course.1: expected the keys to_mm and speed_mm_per_s"),
     ],
 )

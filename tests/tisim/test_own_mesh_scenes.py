@@ -177,6 +177,19 @@ def test_nodes_that_no_element_uses_have_no_part_in_the_length() -> None:
     assert tisim.Beam(material=SOFT, mesh=more).length == pytest.approx(0.06)
 
 
+@pytest.mark.parametrize("imperfections", [tisim.Imperfections(), tisim.Imperfections(curvature=2.0)])
+def test_nodes_that_no_element_uses_stay_at_rest(imperfections: tisim.Imperfections) -> None:
+    """They bent with the start value of the beam, and were its largest displacement."""
+    mesh = bar()
+    more = replace(mesh, nodes=np.vstack([mesh.nodes, [[0.05, 0.0, 0.4]]]))
+    scenes = [tisim.Beam(material=SOFT, mesh=m, imperfections=imperfections) for m in (mesh, more)]
+    alone, found = (tisim.simulate(scene, workers=1) for scene in scenes)
+    np.testing.assert_allclose(found.positions[:, :-1], alone.positions, atol=1e-9)
+    assert np.array_equal(found.positions[-1, -1], found.rest_positions[-1])
+    assert found._summary()[-3] == alone._summary()[-3]
+    assert found._summary()[-3][0] == "largest displacement"
+
+
 def test_a_half_mesh_is_refused_where_a_load_crosses_its_mirror() -> None:
     """It would not move, and be called converged."""
     first = tisim.simulate(tisim.Beam(material=SOFT, length=0.05), workers=1)

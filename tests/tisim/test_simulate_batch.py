@@ -58,6 +58,8 @@ BAD: list[tuple[tisim.Scene, str]] = [
     (tisim.Beam(material=replace(SOFT, parameters={"mu": 1e4}), length=0.05), "lam"),
     (tisim.Poke(material=SOFT, direction=(1.0, 0.0, -0.1)), "direction"),
     (tisim.Poke(material=SOFT, friction=-0.1), "friction"),
+    (tisim.Poke(material=SOFT, depth=5e-10), "depth: expected a length above 1e-09 m"),
+    (tisim.Poke(material=SOFT, depth=1e-3, retract_to=1e-3 - 5e-10), "retract_to: expected a depth"),
     (
         tisim.Beam(material=replace(SOFT, parameters=None), length=0.05),
         "expected parameters by name",

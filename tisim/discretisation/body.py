@@ -78,6 +78,13 @@ class Discretisation:
         """Number of copies of the mesh that make up the whole body."""
         return 2.0 ** len(self.mesh.symmetry)
 
+    @property
+    def still(self) -> NDArray[np.bool_]:
+        """True for nodes that no solution moves, shape (n,): fixed ones, and those of no element."""
+        found = np.ones(self.mesh.n_nodes, dtype=bool)
+        found[self.pattern.free] = False
+        return found
+
     def nodal_volume(self) -> Array:
         """Rest volume by node, the integral of each shape function [m3], shape (n,); sums to the volume.
 

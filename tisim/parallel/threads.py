@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -12,21 +13,28 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_
 SAME_BYTES = {**ONE_THREAD, "MKL_CBWR": "AUTO,STRICT"}
 
 _depth = 0
+_solving = threading.RLock()
 
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Context in which BLAS uses one thread; entering takes 1 ms, or no time inside another such context."""
-    global _depth
-    if _depth:
-        yield
-        return
-    import scipy.linalg  # noqa: F401 - loads scipy's BLAS, so that its threads can be limited
-    from threadpoolctl import threadpool_limits
+    """Context in which BLAS uses one thread, and no other thread of this process solves.
 
-    with threadpool_limits(1):
-        _depth += 1
-        try:
+    Scenes on one mesh share the factors and the work arrays of its discretisation, and the limit on BLAS is
+    that of the process: another thread waits until the context is left. Entering takes 1 ms, or no time
+    inside another such context.
+    """
+    global _depth
+    with _solving:
+        if _depth:
             yield
-        finally:
-            _depth -= 1
+            return
+        import scipy.linalg  # noqa: F401 - loads scipy's BLAS, so that its threads can be limited
+        from threadpoolctl import threadpool_limits
+
+        with threadpool_limits(1):
+            _depth += 1
+            try:
+                yield
+            finally:
+                _depth -= 1

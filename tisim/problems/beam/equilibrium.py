@@ -70,9 +70,8 @@ def equilibrium(
         starts = [(rod, np.zeros(discretisation.mesh.n_elements))]
         if neighbour is not None and neighbour.discretisation is discretisation:
             moved = neighbour.x + (rod - neighbour.rod)
-            moved[discretisation.fixed] = discretisation.mesh.nodes[
-                discretisation.fixed
-            ]  # an imperfect neighbour has other positions there
+            still = discretisation.still  # an imperfect neighbour has other positions there
+            moved[still] = discretisation.mesh.nodes[still]
             starts.insert(0, (moved, neighbour.pressure))
         for guess, pressure in starts:
             if system.potential(guess)[1] > 0.0:
@@ -163,7 +162,8 @@ def rod_shape(scene: Beam, body: DiscretisedBody) -> Array | None:
     x1 = np.interp(t, s, r[:, 0]) - offset * np.sin(angle) + (rest[:, 0] - t)
     x2 = np.interp(t, s, r[:, 1]) + offset * np.cos(angle)
     x = x1[:, None] * np.array([1.0, 0.0, 0.0]) + x2[:, None] * e2 + side[:, None] * e3
-    x[body.discretisation.fixed] = rest[body.discretisation.fixed]
+    still = body.discretisation.still
+    x[still] = rest[still]
     for axis in body.discretisation.mesh.symmetry:
         nodes = body.discretisation.mesh.node_sets[f"mirror_{axis}"]
         x[nodes, "xyz".index(axis)] = rest[nodes, "xyz".index(axis)]

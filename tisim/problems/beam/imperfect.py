@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tisim.discretisation.body import Discretisation
 from tisim.nonlinear.newton import Outcome
 from tisim.problems.beam.equilibrium import Neighbour, equilibrium, mixed_newton, rod_shape
-from tisim.problems.beam.rest_shape import specimen_discretisation
+from tisim.problems.beam.rest_shape import rest_positions, specimen_discretisation
 from tisim.problems.beam.rods import body_positions, clamp_centres, clamped_positions, solve_rod
 from tisim.problems.beam.system import BeamSystem, beam_system
 from tisim.result import Status
@@ -87,6 +87,8 @@ class Clamped:
     def __init__(self, scene: Beam, discretisation: Discretisation, system: BeamSystem) -> None:
         self.scene, self.discretisation, self.system = scene, discretisation, system
         self.fixed = discretisation.fixed
+        self._still = np.flatnonzero(discretisation.still)
+        self._rest = rest_positions(scene, discretisation.mesh)[self._still]
         self.tilts = np.array([scene.clamp_imperfections.tilt, scene.clamp_imperfections.far_tilt])
         self.first_angles = self.tilts
         if scene.clamp_imperfections.compliance > 0.0:
@@ -119,8 +121,12 @@ class Clamped:
         return self.hold(x)
 
     def hold(self, x: Array) -> Array:
-        """Copy of x with the held nodes at their positions in the clamps at the present angles."""
+        """Copy of x with the held nodes at their positions in the clamps at the present angles.
+
+        Nodes of no element stay at rest.
+        """
         x = x.copy()
+        x[self._still] = self._rest
         x[self.fixed] = clamped_positions(self.scene, self.discretisation.mesh, self.fixed, self.angles)
         return x
 

@@ -36,13 +36,19 @@ Array = NDArray[np.float64]
 STEEPEST = 45.0  # largest angle of the rod's direction from the normal [degrees]
 SECONDS = 10.0  # cost of a scene with the default mesh [core-s]
 ELEMENT: ElementKind = "hex20"  # the element type "default"
+SAME = 1e-9  # difference below which two depths are equal [m]
 # Version of the contact, raised when its pressure law or its points change; a dataset has one version only.
 CONTACT = 2
 
 
 def check(scene: Poke) -> None:
     check_course(scene, start=0.0, instead_of=("depth", "retract_to", "frame_spacing"))
-    if scene.course is not None:
+    if scene.course is None:
+        # a shorter way has no step, and so would end well without a frame
+        check_number("depth", scene.depth, f"a length above {SAME:g} m", lambda v: v > SAME)
+        if scene.turns:
+            raise FieldError("turns", "none without a course", scene.turns)
+    else:
         for value in scene.course.values:
             check_not_negative("course.values", value, "depths of 0 m or more")
         if not max(scene.course.values) > 0.0:
@@ -51,8 +57,6 @@ def check(scene: Poke) -> None:
 
         _check_turns(scene, scene.course)
         scene = without_course(scene)
-    elif scene.turns:
-        raise FieldError("turns", "none without a course", scene.turns)
     _check_block(scene.block)
     _check_rod(scene.rod)
     check_vector("site", scene.site, 2)
@@ -69,8 +73,8 @@ def check(scene: Poke) -> None:
     for name, direction in [("direction", scene.direction), *(("turns", way) for _, way in scene.turns)]:
         _check_way(scene, name, direction)
     if scene.retract_to is not None:
-        what = f"a depth [m] from 0 to less than the {scene.depth:g} m asked for, or None"
-        check_number("retract_to", scene.retract_to, what, lambda v: 0.0 <= v < scene.depth)
+        what = f"a depth [m] from 0 to {SAME:g} less than the {scene.depth:g} m asked for, or None"
+        check_number("retract_to", scene.retract_to, what, lambda v: 0.0 <= v < scene.depth - SAME)
     check_not_negative("friction", scene.friction)
     check_length("frame_spacing", scene.frame_spacing)
     check_choice("element", scene.element, ("default", "tet4", "tet10", "hex8", "hex20"))

@@ -17,7 +17,7 @@ from tisim.problems._registry import OnStep, skip
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.course import follow, without_course
 from tisim.problems.indentation.damped import solve_step
-from tisim.problems.indentation.kind import ELEMENT
+from tisim.problems.indentation.kind import ELEMENT, SAME
 from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.steps import (
     BETWEEN,
@@ -41,7 +41,6 @@ _log = logging.getLogger(__name__)
 # A frame has a smaller tolerance than the steps between frames. If its equilibrium is not found, the frame is
 # tried again further on, by this fraction of the frame spacing.
 LATER = 0.1
-SAME = 1e-9  # difference below which two depths are equal [m]
 
 
 @one_thread()
