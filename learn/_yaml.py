@@ -100,13 +100,13 @@ def first_fault(error: ValidationError, source: Mapping[str, Any] | None = None)
 
 def _in_words(fault: ErrorDetails) -> tuple[tuple[Any, ...], str]:
     """The path to a fault, and what was expected there, in the words of a YAML file."""
-    path, about, got = fault["loc"], fault.get("ctx", {}), f"got {fault['input']!r:.40}"
+    path, about, value = fault["loc"], fault.get("ctx", {}), fault["input"]
     chosen_by = str(about.get("discriminator")).strip("'")  # the key of a union's tag
     match fault["type"]:
         case "extra_forbidden" | "invalid_key":
             return path, "no such key"
         case "missing" if isinstance(path[-1], int):
-            return path[:-1], f"expected more values, got {len(fault['input'])}"
+            return path[:-1], f"expected more values, got {len(value)}"
         case "missing":
             return path, "this key is missing"
         case "union_tag_not_found":
@@ -116,12 +116,12 @@ def _in_words(fault: ErrorDetails) -> tuple[tuple[Any, ...], str]:
         case "too_long":
             return path, f"expected at most {about['max_length']} values, got {about['actual_length']}"
         case "tuple_type" | "list_type":
-            return path, f"expected a list, {got}"
+            return path, f"expected a list, got {value!r:.40}"
         case "model_type" | "model_attributes_type" | "dict_type":
-            return path, f"expected keys and values, {got}"
+            return path, f"expected keys and values, got {value!r:.40}"
     text = str(fault["msg"]).removeprefix("Value error, ")
     plain = fault["type"].startswith(("float", "int", "bool", "finite", "string"))
-    return path, f"{text}, {got}" if plain else text
+    return path, f"{text}, got {value!r:.40}" if plain else text
 
 
 def _keys(path: tuple[Any, ...], source: Any) -> list[str]:
