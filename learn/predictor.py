@@ -86,10 +86,8 @@ class PokePrediction:
         names = ", ".join(
             f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
         )
-        return (
-            f"Outside the trained ranges: {names}. The force may be wrong by a factor; the intervals are "
-            "wider, and not calibrated there."
-        )
+        wider = "" if self.radius is None else "; the intervals are wider, and not calibrated there"
+        return f"Outside the trained ranges: {names}. The force may be wrong by a factor{wider}."
 
     def as_dict(self) -> dict[str, Any]:
         """The numbers of prediction.json."""
