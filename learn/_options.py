@@ -48,7 +48,10 @@ Plugins = Annotated[
     ),
 ]
 Dataset = Annotated[str | None, typer.Option(help="Path of the dataset, if it has moved since training.")]
-Threads = Annotated[int | None, typer.Option(min=1, help="Number of CPU threads. Default: one per core.")]
+Threads = Annotated[
+    int | None,
+    typer.Option(min=1, help="Number of CPU threads. Default: OMP_NUM_THREADS, else one per core."),
+]
 Device = Annotated[str, typer.Option(help="auto, cpu or cuda.")]
 Runs = Annotated[
     list[Path], typer.Argument(help="Folders of runs, trained on one dataset.", metavar="RUN...")
@@ -56,7 +59,13 @@ Runs = Annotated[
 
 
 def set_threads(threads: int | None) -> None:
-    """Set the number of torch's threads; all cores if None."""
+    """Set torch's number of threads; None: OMP_NUM_THREADS, else one per core that this process may use.
+
+    torchrun sets OMP_NUM_THREADS for its processes: with all cores in each they would slow each other down.
+    """
     import torch
 
-    torch.set_num_threads(threads or os.cpu_count() or 1)
+    if threads is None and os.environ.get("OMP_NUM_THREADS"):
+        return  # torch has read it
+    mine = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    torch.set_num_threads(threads or mine or 1)

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import yaml
 from pydantic import Field, ValidationError
+from pydantic_core import ErrorDetails
 
 from learn.errors import InputError
 
@@ -17,7 +18,7 @@ _BYTES, _EVENTS, _DEPTH = 1_000_000, 20_000, 30
 
 
 class _Loader(yaml.SafeLoader):
-    """Loader that refuses duplicate keys, and reads 1e-3 as a number (YAML 1.1 requires 1.0e-3)."""
+    """Loader that refuses duplicate keys, reads numbers as YAML 1.2 does, and keeps dates as text."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen: set[str] = set()
@@ -29,9 +30,21 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep=deep)
 
 
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$"), list("-+0123456789")
-)
+# As in `tisim.io.bounded_yaml`, of which learn imports nothing. In YAML 1.1 a depth of 010 is octal (8), 1:30
+# is of base 60 (90), and 1e-3 a text. What is no number here stays text, which a key for a number refuses.
+_REPLACED = {f"tag:yaml.org,2002:{name}" for name in ("timestamp", "int", "float")}
+_Loader.yaml_implicit_resolvers = {
+    start: [(tag, pattern) for tag, pattern in entries if tag not in _REPLACED]
+    for start, entries in _Loader.yaml_implicit_resolvers.items()
+}
+for _tag, _pattern in (
+    ("int", r"^[-+]?(0|[1-9][0-9]*)$"),
+    (
+        "float",
+        r"^[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))([eE][-+]?[0-9]+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$",
+    ),
+):
+    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(_pattern), list("-+.0123456789"))
 
 
 def read_yaml(path: Path) -> dict[Any, Any]:
@@ -79,17 +92,36 @@ def first_fault(error: ValidationError, source: Mapping[str, Any] | None = None)
     """
     faults = error.errors(include_url=False)
     faults.sort(key=lambda fault: fault["type"] not in ("extra_forbidden", "invalid_key"))
-    fault = faults[0]
-    text = str(fault["msg"]).removeprefix("Value error, ")
-    if fault["type"] in ("extra_forbidden", "invalid_key"):
-        text = "no such key"
-    elif fault["type"] == "missing":
-        text = "this key is missing"
-    elif fault["type"].startswith(("float", "int", "bool", "finite", "string")) and "input" in fault:
-        text = f"{text}, got {fault['input']!r:.40}"
-    key = ".".join(_keys(fault["loc"], source))
+    path, text = _in_words(faults[0])
+    key = ".".join(_keys(path, source))
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     return f"key {key}: {text}{more}" if key else f"{text}{more}"
+
+
+def _in_words(fault: ErrorDetails) -> tuple[tuple[Any, ...], str]:
+    """The path to a fault, and what was expected there, in the words of a YAML file."""
+    path, about, value = fault["loc"], fault.get("ctx", {}), fault["input"]
+    chosen_by = str(about.get("discriminator")).strip("'")  # the key of a union's tag
+    match fault["type"]:
+        case "extra_forbidden" | "invalid_key":
+            return path, "no such key"
+        case "missing" if isinstance(path[-1], int):
+            return path[:-1], f"expected more values, got {len(value)}"
+        case "missing":
+            return path, "this key is missing"
+        case "union_tag_not_found":
+            return (*path, chosen_by), "this key is missing"
+        case "union_tag_invalid":
+            return (*path, chosen_by), f"expected one of {about['expected_tags']}, got {about['tag']!r:.40}"
+        case "too_long":
+            return path, f"expected at most {about['max_length']} values, got {about['actual_length']}"
+        case "tuple_type" | "list_type":
+            return path, f"expected a list, got {value!r:.40}"
+        case "model_type" | "model_attributes_type" | "dict_type":
+            return path, f"expected keys and values, got {value!r:.40}"
+    text = str(fault["msg"]).removeprefix("Value error, ")
+    plain = fault["type"].startswith(("float", "int", "bool", "finite", "string"))
+    return path, f"{text}, got {value!r:.40}" if plain else text
 
 
 def _keys(path: tuple[Any, ...], source: Any) -> list[str]:

@@ -87,7 +87,8 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     [(_, _, many)] = scenes.parts(pokes_of(data.__getitems__(np.arange(len(rows)))))
     one = type(many)(**{name: value[:1] for name, value in vars(many).items()})
     encoded = model.encode(scene, model.prepare(scene))
-    shape, level = store.shapes[store.shape[0]], store.softness_names[store.softness[0]]
+    first = store.frame_poke[0]  # a poke before it may not have been simulated
+    shape, level = store.shapes[store.shape[first]], store.softness_names[store.softness[first]]
     interior = {"shape": shape, "softness": level}
     for threads in (1, 2):
         torch.set_num_threads(threads)

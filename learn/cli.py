@@ -16,6 +16,7 @@ import typer
 from learn._options import Dataset, Device, Plugins, Runs, Threads, Version, load_plugins, set_threads
 from learn._terminal import fail, log_to, make_console, plain_errors, print_table, terminable
 from learn._training_screen import TrainingScreen
+from learn.errors import InputError
 
 app = typer.Typer(
     name="learn",
@@ -180,31 +181,30 @@ def evaluate(
     """Evaluate runs on the test part: tables beside baselines, and report.html."""
     console = make_console()
     with plain_errors():
-        from learn.data import open_store
         from learn.evaluation import evaluate as evaluate_runs
         from learn.evaluation import replaced_text, save_intervals
         from learn.evaluation.report import tables, verdict, write_report
-        from learn.training import check_dataset, load_run, make_device
+        from learn.training import check_dataset, load_run, make_device, open_dataset
 
         load_plugins(plugin or [])
         set_threads(threads)
         log_to(console)
         chosen = make_device(device)
-        loaded = [load_run(folder) for folder in runs]
-        store = open_store(dataset or loaded[0].location)
+        folder = out or runs[0] / "evaluation"
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"--out {folder}: expected the name of a folder, this is a file")
+        loaded = [load_run(path) for path in runs]
+        store = open_dataset(loaded[0], dataset)
+        if transfer and all(run.uuid == store.uuid for run in loaded):
+            raise InputError(
+                f"--transfer: {store.location} is what was trained on, expected another --dataset"
+            )
         for run in loaded if not transfer else ():
             check_dataset(run.uuid, run.folder, store, hint=" (--transfer allows it)")
         found = evaluate_runs(
             loaded, store, baselines=baselines, clouds=clouds, ensemble=ensemble, device=chosen
         )
-        folder = out or runs[0] / "evaluation"
         write_report(found, folder)
-        if not transfer:
-            for run, intervals in found.intervals:
-                text = replaced_text(run, intervals)
-                if text is not None:
-                    console.print(text)
-                save_intervals(run, intervals)
         for title, ((heads, rows), notes) in tables(found).items():
             if rows:
                 print_table(console, title, heads, rows)
@@ -212,6 +212,14 @@ def evaluate(
                 console.print(f"{title}: {' '.join(notes[:-1])}")
         console.print(verdict(found))
         console.print(f"{folder}: report.html, tables.json, pictures")
+        if transfer:
+            return
+        # last, so that a run's folder that cannot be written costs no more than the intervals
+        for run, intervals in found.intervals:
+            text = replaced_text(run, intervals)
+            if text is not None:
+                console.print(text)
+            save_intervals(run, intervals)
 
 
 # -- predict -------------------------------------------------------------------------------------------------
@@ -359,12 +367,11 @@ def bench(
     console = make_console()
     with plain_errors():
         from learn.benchmark import BATCH, latencies, loader_rates, yardstick
-        from learn.data import open_store
-        from learn.training import check_dataset, load_run
+        from learn.training import check_dataset, load_run, open_dataset
 
         load_plugins(plugin or [])
         loaded = [load_run(run) for run in runs]
-        store = open_store(dataset or loaded[0].location, verify=False)
+        store = open_dataset(loaded[0], dataset, verify=False)
         for run in loaded:
             check_dataset(run.uuid, run.folder, store)
         rows = [row for run in loaded for row in latencies(run, store, repeats)]

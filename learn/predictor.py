@@ -11,6 +11,7 @@ Both objects print as tables in a notebook, the answer with its picture.
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,14 +24,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from learn.data import Store, open_store
+from learn.data import Store
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
 from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Response, Scene
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
-from learn.training import Run, check_dataset, known_domain, load_run
+from learn.training import Run, check_dataset, known_domain, load_run, open_dataset
+from learn.training.run_folder import write_whole
 from learn.validity import Check, Domain, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
@@ -84,10 +86,8 @@ class PokePrediction:
         names = ", ".join(
             f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
         )
-        return (
-            f"Outside the trained ranges: {names}. The force may be wrong by a factor; the intervals are "
-            "wider, and not calibrated there."
-        )
+        wider = "" if self.radius is None else "; the intervals are wider, and not calibrated there"
+        return f"Outside the trained ranges: {names}. The force may be wrong by a factor{wider}."
 
     def as_dict(self) -> dict[str, Any]:
         """The numbers of prediction.json."""
@@ -109,18 +109,24 @@ class PokePrediction:
         return answer
 
     def save(self, folder: Path | str) -> Path:
-        """Write FOLDER/displacement.csv, prediction.json and prediction.png."""
+        """Write FOLDER/displacement.csv, prediction.json and prediction.png.
+
+        All are made before the first is written, so that a fault leaves an earlier prediction as it was.
+        """
         folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
         columns = [self.points * 1e3, self.displacement * 1e3]
         heads = "x_mm,y_mm,z_mm,ux_mm,uy_mm,uz_mm"
         if self.radius is not None:
             columns, heads = [*columns, self.radius[:, None] * 1e3], f"{heads},radius_mm"
         table = np.concatenate(columns, axis=1)
-        np.savetxt(folder / "displacement.csv", table, delimiter=",", header=heads, comments="", fmt="%.6g")
-        text = json.dumps(self.as_dict(), indent=1) + "\n"
-        (folder / "prediction.json").write_text(text, encoding="utf-8")
-        self.picture().savefig(folder / "prediction.png", dpi=110)
+        rows, picture = io.StringIO(), io.BytesIO()
+        np.savetxt(rows, table, delimiter=",", header=heads, comments="", fmt="%.6g")
+        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
+        self.picture().savefig(picture, format="png", dpi=110)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_whole(folder / "displacement.csv", rows.getvalue().encode())
+        write_whole(folder / "prediction.json", text.encode())
+        write_whole(folder / "prediction.png", picture.getvalue())
         return folder
 
     def picture(self) -> Any:
@@ -331,7 +337,7 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
         raise InputError("expected the folder of a run, got none")
     runs = [load_run(folder) for folder in folders]
     joined = join_runs(runs) if len(runs) > 1 else runs[0]
-    store = open_store(dataset or joined.location, verify=False)
+    store = open_dataset(joined, dataset, verify=False)
     if len(runs) == 1:
         return Predictor(joined, store)
     domains = [known_domain(one, store) for one in runs]

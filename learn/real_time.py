@@ -132,16 +132,21 @@ class RealTime:
         Raises
         ------
         InputError
-            If a value is not finite, or the direction does not point into the block or is not a unit vector.
+            If a value is not finite, the direction does not point into the block or is not a unit vector, or
+            `modulus` is not above 0.
         """
-        push = np.asarray(direction, dtype=np.float64)
+        push, depth = np.asarray(direction, dtype=np.float64), float(depth)
         size = math.sqrt(float(push @ push))
-        if not (abs(size - 1.0) <= _ONE and push[2] < 0.0):
+        if not (push.shape == (3,) and abs(size - 1.0) <= _ONE and push[2] < 0.0):
             raise InputError(
                 f"direction: expected a unit vector that points down into the block, got {direction}"
             )
+        if len(site) != 2:
+            raise InputError(f"site: expected (x, y), got {tuple(site)}")
         if not (math.isfinite(depth) and math.isfinite(site[0]) and math.isfinite(site[1])):
             raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
+        if not 0.0 < self.modulus < math.inf:
+            raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {self.modulus}")
         start = self._setup.first_touch(site, push)
         u, force = self._single(start, push, depth, self.modulus)
         values = poke_values(

@@ -249,6 +249,11 @@ def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
     middle = setup.middle * 1e3
     low, high = middle - size[:2] / 2, middle + size[:2] / 2
     radius = setup.rod_radius * 1e3
+    if min(size[:2]) < 2 * radius:
+        raise InputError(
+            f"{where}: key block_mm: expected sides of the indenter's diameter, {2 * radius:.4g} mm, or more,"
+            f" got {size[0]:.4g} x {size[1]:.4g}"
+        )
     for k, value in enumerate(file.site_mm):
         if not low[k] + radius <= value <= high[k] - radius:
             bounds = ", ".join(

@@ -119,7 +119,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "material", nargs="*", help=f"law, or law+part+...; laws: {', '.join(tisim.laws.all_names())} (all"
         f" when none is given); parts: {', '.join(PARTS)}"
     )  # fmt: skip
-    parser.add_argument("--workers", type=int, default=1, help="processes")
+    parser.add_argument("--workers", type=int, default=1, help="number of processes (default: 1)")
     parser.add_argument("--version", action="version", version=f"tisim {tisim.__version__}")
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")

@@ -61,7 +61,6 @@ class PredictedRecord:
     ----------
     value : predicted [SI], shape (p,).
     sds : by source [SI], each (p,).
-    noise : sd of the measurement's noise, in units of which it is judged [SI], shape (p,).
     """
 
     value: Array

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from learn.data.store import Store, open_store
+from learn.errors import InputError
 
 Floats32 = NDArray[np.float32]
 _READERS = 2  # threads: decompression takes some four times as long as shuffling
@@ -131,7 +132,7 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
     drawn at random from the buffer while two other threads read the next shard. Memory is thus bounded by
     shuffle_buffer + 2 shards (`bytes_held`), whatever the store's size, and every frame occurs exactly once
     per epoch. Loader workers and the ranks of torchrun each take a subset of the shards, with a different
-    shuffle in each.
+    shuffle in each. InputError if a frame is given twice, or is none of the store.
 
     >>> data = StreamDataset("https://example.org/pokes.zarr", split.train, batch=64, seed=1)
     >>> data.epoch = 3
@@ -150,7 +151,14 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
         world: int = 1,
     ) -> None:
         self.store = store if isinstance(store, Store) else open_store(store)
-        self.rows = np.sort(np.asarray(rows, dtype=np.int64))
+        self.rows = np.unique(np.asarray(rows, dtype=np.int64))
+        frames = self.store.frames
+        if len(self.rows) < len(rows) or ((self.rows < 0) | (self.rows >= frames)).any():
+            raise InputError(
+                f"rows: expected each of the {frames} frames of the store, 0 and up, at most once"
+            )
+        if batch < 1:
+            raise InputError(f"batch: expected 1 or more frames, got {batch}")
         self.batch, self.shuffle_buffer, self.seed = batch, max(1, shuffle_buffer), seed
         self.rank, self.world = rank, world
         self._per_shard, self._chunk = self.store.shard, self.store.chunk  # slow to look up

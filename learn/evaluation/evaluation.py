@@ -181,7 +181,8 @@ def evaluate(
     Raises
     ------
     InputError
-        If a run is given twice, does not fit the dataset, or with `ensemble` no two can be joined.
+        If a run is given twice, does not fit the dataset, or predicts what is not finite, or with `ensemble`
+        no two can be joined.
     """
     _check_once(runs)
     found = Evaluation(runs=runs, store=store, device=torch.device(device))
@@ -199,6 +200,7 @@ def evaluate(
         steps.next(f"{run.folder}: {len(test)} test frames")
         run.model.to(found.device)
         predictions = predict_part(run.model, scenes, test)
+        _check_finite(run, predictions)
         found.folds.setdefault(name, []).append(by_softness(predictions))
         found.models += [name] if name not in found.models else []
         tested[split.test] = True
@@ -247,6 +249,18 @@ def _check_once(runs: list[Run]) -> None:
     for run, place in zip(runs, places, strict=True):
         if places.count(place) > 1:
             raise InputError(f"{run.folder}: given twice, expected each run once")
+
+
+def _check_finite(run: Run, predictions: Predictions) -> None:
+    """Raise InputError if a prediction is not finite: the means of the tables would leave such frames out."""
+    good = np.isfinite(predictions.predicted).all(axis=(1, 2)) & np.isfinite(predictions.force_predicted)
+    if not good.all():
+        why = " (a member's force may be 0 N or less, which has no geometric mean)" if run.members else ""
+        which = ", ".join(map(str, run.members or [run.folder]))
+        raise InputError(
+            f"{which}: the answer to {int((~good).sum())} of {len(good)} frames, the first of poke"
+            f" {int(predictions.poke[~good][0])}, is not finite{why}: train for more epochs"
+        )
 
 
 def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:

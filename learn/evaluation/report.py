@@ -316,11 +316,20 @@ def write_report(found: Evaluation, folder: Path) -> None:
         for name, picture in {"learning": learning, **pictures}.items()
         if picture
     }
-    files["tables.json"] = (json.dumps(as_json(found), indent=1) + "\n").encode()
+    files["tables.json"] = (json.dumps(_finite(as_json(found)), indent=1, allow_nan=False) + "\n").encode()
     files["report.html"] = html.encode()
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         write_whole(folder / name, content)
+
+
+def _finite(values: Any) -> Any:
+    """The values with null for numbers that are none, which JSON has no word for."""
+    if isinstance(values, dict):
+        return {key: _finite(value) for key, value in values.items()}
+    if isinstance(values, list | tuple):
+        return [_finite(value) for value in values]
+    return None if isinstance(values, float) and not isfinite(values) else values
 
 
 def as_json(found: Evaluation) -> dict[str, Any]:

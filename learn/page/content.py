@@ -70,9 +70,12 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
         )
     if model.takes_clock:
         raise InputError(f"{run.folder}: a model that was trained with time has no live page")
+    simulated_shapes = [
+        name for k, name in enumerate(store.shapes) if (store.done & (store.shape == k)).any()
+    ]
     for name in shapes or ():
-        if name not in store.shapes:
-            raise InputError(f"--shape {name}: expected one of {', '.join(store.shapes)}")
+        if name not in simulated_shapes:
+            raise InputError(f"--shape {name}: expected one of {', '.join(simulated_shapes)}")
     split = split_of_run(store, run)
     tested = np.unique(store.frame_poke[split.test])
     seen = {store.shapes[k] for k in store.shape[store.frame_poke[split.train]].tolist()}

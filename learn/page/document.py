@@ -134,7 +134,7 @@ class Parts:
             _Described.model_validate_json(text)
         except ValidationError as error:
             raise InputError(f"{path}: page.json: {first_fault(error)}") from None
-        except (OSError, KeyError, zipfile.BadZipFile, zlib.error, EOFError) as error:
+        except (OSError, KeyError, RuntimeError, zipfile.BadZipFile, zlib.error, EOFError) as error:
             raise InputError(
                 f"{path}: expected the parts of a page, as learn.page --parts writes them ({error})"
             ) from None

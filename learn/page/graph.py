@@ -130,7 +130,7 @@ class PagePart(nn.Module):
         x, y, angle, heading, depth, modulus = poke.unbind(0)
         sine, cosine = torch.sin(angle), torch.cos(angle)
         push = torch.stack([sine * torch.cos(heading), sine * torch.sin(heading), -cosine])
-        # as in `learn.scene_file.first_touch`
+        # as in `learn.data.Setup.first_touch`
         above = self.edge * (1 - cosine) + (self.radius - self.edge) * sine
         tip = torch.stack([x, y, self.top]) - push * (above / cosine)
         u, force = self.network(base, looked, vectors, clear, layers, tip, push, depth, modulus)

@@ -3,7 +3,14 @@
 from learn.training.loop import DivergedError, Trainer
 from learn.training.process_group import ProcessGroup, make_device, make_process_group
 from learn.training.recipe import RECIPES, Recipe, load_recipe
-from learn.training.run_folder import Run, check_dataset, known_domain, load_run, read_log
+from learn.training.run_folder import (
+    Run,
+    check_dataset,
+    known_domain,
+    load_run,
+    open_dataset,
+    read_log,
+)
 
 __all__ = [
     "RECIPES",
@@ -18,5 +25,6 @@ __all__ = [
     "load_run",
     "make_device",
     "make_process_group",
+    "open_dataset",
     "read_log",
 ]

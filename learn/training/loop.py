@@ -373,8 +373,13 @@ class Trainer:
                 raise InputError(
                     f"{self.folder}: a run is there already; --resume goes on, or choose another --out"
                 )
+            self._check_best()
             return None
         content = load_checkpoint(path)
+        if not (self.folder / BEST).is_file():
+            raise InputError(
+                f"{self.folder / BEST}: missing beside {LAST}, expected both (the best epoch so far is in it)"
+            )
         check_dataset(content["uuid"], path, self.store)
         before, now = recipe_of(content, path).model_dump(), self.recipe.model_dump()
         seen = content.get("seen", self.seen)
@@ -390,6 +395,20 @@ class Trainer:
             key = different[0]
             raise InputError(f"{path}: was trained with {key} {before[key]}, the recipe now has {now[key]}")
         return content
+
+    def _check_best(self) -> None:
+        """Raise InputError if weights of another run would be overwritten, kept without its `last.pt`."""
+        path = self.folder / BEST
+        if not path.exists():
+            return
+        content = load_checkpoint(path)
+        # what a stop between the two files of the first epoch leaves is this run's
+        own = content["recipe"] == self.recipe.model_dump(mode="json") and content["uuid"] == self.store.uuid
+        if not own or content["epoch"] > 1:
+            raise InputError(
+                f"{self.folder}: the {BEST} of another training is there, without the {LAST} from which it"
+                " would go on: choose another --out"
+            )
 
     def _restore(self, content: dict[str, Any]) -> None:
         path = self.folder / LAST

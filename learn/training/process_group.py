@@ -99,4 +99,9 @@ def make_device(device: str = "auto") -> torch.device:
         raise InputError(f"device {device}: expected auto, cpu or cuda")
     if chosen.type == "cuda" and not torch.cuda.is_available():
         raise InputError(f"device {device}: torch sees no GPU here, expected auto or cpu")
+    if chosen.type == "cuda" and (chosen.index or 0) >= torch.cuda.device_count():
+        count = torch.cuda.device_count()
+        raise InputError(
+            f"device {device}: expected a number below {count}, of the GPUs that torch sees here"
+        )
     return chosen

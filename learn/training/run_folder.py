@@ -24,7 +24,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from learn._yaml import Finite, first_fault
 from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
-from learn.data.store import Store
+from learn.data.store import Store, open_store
 from learn.errors import InputError
 from learn.models import MODELS, Model, make_model
 from learn.training.recipe import Recipe, check_recipe
@@ -220,6 +220,18 @@ def load_run(folder: Path | str) -> Run:
         weights=(hashlib.sha256(data).hexdigest(),),
         domain=None if domain is None else Domain.from_dict(domain, str(path)),
     )
+
+
+def open_dataset(run: Run, dataset: Path | str | None = None, *, verify: bool = True) -> Store:
+    """Open the dataset of a run, where it was at training or at `dataset`; InputError if it cannot be."""
+    try:
+        return open_store(run.location if dataset is None else dataset, verify=verify)
+    except InputError as error:
+        if dataset is not None or "://" in run.location or Path(run.location).exists():
+            raise
+        raise InputError(
+            f"{error}: {run.folder} was trained on it; if it has moved, --dataset states where it is now"
+        ) from None
 
 
 def known_domain(run: Run, store: Store) -> Domain | None:

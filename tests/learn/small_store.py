@@ -204,6 +204,25 @@ def write_arrays(
     put("surface_displacement", moved.reshape(-1, 3), "f4", "m")
 
 
+def leave_out(folder: Path, pokes: list[int]) -> None:
+    """Make pokes of a store ones that were not simulated, as in that of a stopped build: without frames."""
+    group = zarr.open_group(folder, mode="r+")
+
+    def values(name: str) -> np.ndarray[Any, Any]:
+        return np.asarray(group[name][...])  # type: ignore[index]
+
+    kept = ~np.isin(values("frame_poke"), pokes)
+    for name in ("frame_poke", "depth", "rod_force", "grid_displacement"):
+        left = values(name)[kept]
+        group[name].resize(left.shape)  # type: ignore[union-attr]
+        group[name][...] = left  # type: ignore[index]
+    counts, done = values("frame_count"), values("done")
+    counts[pokes], done[pokes] = 0, False
+    for name, value in (("frame_count", counts), ("done", done), ("frame_start", np.cumsum(counts) - counts)):
+        group[name][...] = value  # type: ignore[index]
+    write_manifest(folder)
+
+
 def write_manifest(folder: Path) -> None:
     """Write the manifest of the present files' sha256 sums."""
     files = [p for p in sorted(folder.rglob("*")) if p.is_file() and p.name != "manifest.json"]

@@ -238,6 +238,7 @@ def test_the_block_of_ones_own_inclusion_is_stated(run: Path) -> None:
     assert checks["block_y_mm"].value == pytest.approx(80)
     far = predictor.predict({**POKE, "block_mm": [100, 80, 60]})
     assert "block's height" in far.verdict
+    assert "interval" not in far.verdict  # the run has none
     with pytest.raises(InputError, match="expected no key block_mm beside shape"):
         predictor.predict({**POKE, "inclusion": None, "shape": "shape-1", "block_mm": [100, 80, 30]})
     with pytest.raises(InputError, match=r"site_mm: expected x and y within -47.5 to 47.5, -27.5"):

@@ -18,6 +18,7 @@ import learn.evaluate
 import learn.export
 import learn.predict
 import learn.train
+from learn._options import set_threads
 from learn._terminal import print_table
 from learn.metrics import METRICS
 from learn.models import MODELS
@@ -164,6 +165,24 @@ def test_names_with_brackets_are_no_markup(store: Path, tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert str(folder) in done.output
     refused(call(learn.evaluate.app, tmp_path / "[/no]"), str(tmp_path / "[/no]"))
+
+
+def test_threads_are_those_that_the_process_was_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    """torchrun sets OMP_NUM_THREADS for each of its processes, a batch system the cores."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    monkeypatch.setattr(os, "cpu_count", lambda: 4)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    try:
+        torch.set_num_threads(1)
+        set_threads(None)
+        assert torch.get_num_threads() == 1
+        set_threads(2)
+        assert torch.get_num_threads() == 2
+        monkeypatch.delenv("OMP_NUM_THREADS")
+        set_threads(None)
+        assert torch.get_num_threads() == 3
+    finally:
+        torch.set_num_threads(1)
 
 
 def test_bad_devices_are_refused(store: Path, tmp_path: Path) -> None:

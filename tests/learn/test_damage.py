@@ -22,7 +22,7 @@ import learn.train
 import learn.training
 from learn.data import open_store
 from learn.errors import InputError
-from learn.evaluation import Evaluation
+from learn.evaluation import Evaluation, intervals_file
 from learn.evaluation.report import write_report
 from learn.training import Recipe, Trainer, load_run, read_log
 from learn.training.run_folder import load_checkpoint, save_checkpoint
@@ -115,7 +115,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
     "a weight is gone": (_weights(lambda w: w.pop("look.weight")), "does not fit model"),
     "a weight is not finite": (_weights(lambda w: w["look.weight"].fill_(float("nan"))), "look.weight"),
     "garbled domain": (_content(domain={"ranges": {"depth_mm": [1]}}), "domain: key "),
-    "dataset moved": (_content(location="/nowhere/s.zarr"), "/nowhere/s.zarr: no dataset there"),
+    "dataset moved": (_content(location="/nowhere/s.zarr"), "if it has moved, --dataset states where"),
     "another dataset": (_content(uuid="other"), "trained on dataset other"),
 }
 
@@ -186,6 +186,25 @@ def test_a_report_that_cannot_be_made_is_not_begun(run: Path, store: Path, tmp_p
     with pytest.raises(AssertionError):  # it has no predictions
         write_report(found, tmp_path / "report")
     assert not (tmp_path / "report").exists()
+
+
+def test_a_run_that_cannot_be_written_to_has_its_report(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only its intervals cannot be kept: the last thing that is tried."""
+
+    def read_only(path: Path, _: bytes) -> None:
+        raise OSError(errno.EROFS, "Read-only file system", str(path))
+
+    monkeypatch.setattr(intervals_file, "write_whole", read_only)
+    flags = ("--no-clouds", "--no-baselines", "--threads", 1, "--out", tmp_path / "out")
+    done = call(learn.evaluate.app, run, *flags)
+    refused(done, "cannot use", "intervals.json: Read-only file system")
+    assert "is off by" in done.stdout
+    assert (tmp_path / "out" / "report.html").exists()
+    # nor has JSON a word for what is no number, as the errors on clouds that were left out
+    text = (tmp_path / "out" / "tables.json").read_text()
+    assert json.loads(text, parse_constant=pytest.fail)["cloud_interpolation_mm"] is None
 
 
 def test_a_run_that_cannot_be_resumed_says_why(store: Path, run: Path) -> None:

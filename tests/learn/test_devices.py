@@ -137,6 +137,14 @@ def test_a_gpu_that_is_not_there_is_refused() -> None:
         make_device("cuda")
 
 
+def test_a_gpu_beyond_those_there_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
+    assert make_device("cuda:1").index == 1
+    with pytest.raises(InputError, match="device cuda:2: expected a number below 2, of the GPUs"):
+        make_device("cuda:2")
+
+
 def test_one_process_without_torchrun_joins_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("WORLD_SIZE", raising=False)
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)

@@ -311,6 +311,25 @@ class _Truth(Model):
         return Response(displacement=u, force=pokes.depth.float() * self.more)
 
 
+class _WithoutForce(_Truth):
+    """The same, with a force of 0 at half of the depth: negative above it."""
+
+    def decode(self, encoded: Scene, pokes: Pokes) -> Response:
+        found = super().decode(encoded, pokes)
+        return replace(found, force=found.force - 1.5e-3)
+
+
+def test_answers_that_are_not_finite_are_no_part_of_a_mean(run: Path, store: Path) -> None:
+    """Forces of both signs have no geometric mean: such frames of an ensemble were left out of the means."""
+    loaded = load_run(run)
+    joined = Ensemble([_Truth(), _WithoutForce()])
+    bad = replace(loaded, model=joined, members=(run, Path("other")))
+    with pytest.raises(
+        InputError, match=r"other: the answer to .* frames, the first of poke .* no geometric mean"
+    ):
+        evaluate([bad], open_store(store), baselines=False, clouds=False)
+
+
 def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
     """The exact field at scattered points differs from the target only by the mesh's interpolation error."""
     store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
@@ -336,6 +355,12 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     )
     assert own.exit_code == 0, own.output
     kept = (run / "intervals.json").read_bytes()
+    for extra, words in (
+        (["--transfer"], "expected another --dataset"),
+        (["--out", run / "best.pt"], "--out"),
+    ):
+        wrong = _call(learn.evaluate.app, run, *extra)  # type: ignore[arg-type]
+        assert (wrong.exit_code, words in wrong.stderr) == (2, True), wrong.output
     refused = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out")
     assert refused.exit_code == 2
     assert not (tmp_path / "out").exists()

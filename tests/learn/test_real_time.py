@@ -144,12 +144,22 @@ def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
         ({"direction": (0.0, math.nan, -1.0)}, "direction: expected a unit vector"),
         ({"depth": math.nan}, "finite site and depth"),
         ({"site": (math.inf, 0.0)}, "finite site and depth"),
+        ({"site": (0.0, 0.0, 0.032)}, r"site: expected \(x, y\), got"),
+        ({"direction": (0.0, -1.0)}, "direction: expected a unit vector"),
     ],
 )
 def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: str) -> None:
     plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
     with pytest.raises(InputError, match=words):
         touch(**{**plain, **poke})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("modulus", [0.0, -1e3, math.nan, math.inf])
+def test_a_modulus_that_is_none_is_refused(predictor: Predictor, modulus: float) -> None:
+    touch = predictor.real_time(INTERIOR)
+    touch.modulus = modulus
+    with pytest.raises(InputError, match="modulus: expected a shear modulus above 0 Pa"):
+        touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=1e-3)
 
 
 def test_an_interior_has_no_poke_and_no_unknown_keys(predictor: Predictor) -> None:

@@ -32,6 +32,15 @@ def _frames(batches: Iterator[Batch] | StreamDataset) -> list[int]:
     return [int(frame) for batch in batches for frame in batch.frame]
 
 
+@pytest.mark.parametrize("rows", [[0, 0, 2], [-1, 0], [0, 10_000]])
+def test_frames_that_are_none_or_come_twice_are_refused(store: Store, rows: list[int]) -> None:
+    """[0, 0, 2] was given the displacement of the frames 0, 1 and 2."""
+    with pytest.raises(InputError, match=r"rows: expected each of the .* frames of the store, 0 and up"):
+        StreamDataset(store, np.array(rows))
+    with pytest.raises(InputError, match="batch: expected 1 or more"):
+        StreamDataset(store, np.array([0]), batch=0)  # went on without end
+
+
 def test_each_frame_comes_once_with_its_own_values(store: Store) -> None:
     rows = split_pokes(store, fold=2).train
     whole = store.displacement(slice(0, store.frames))

@@ -302,3 +302,23 @@ def test_dropout_of_an_epoch_does_not_depend_on_where_the_run_was_resumed(
             trainer._epoch()
             drawn.append(torch.rand(3).tolist())
     assert drawn[0] == drawn[1] != drawn[2] == drawn[3]
+
+
+def test_best_weights_without_their_training_are_not_overwritten(folder: Path, tmp_path: Path) -> None:
+    """A run is kept so for release. A stop within the first epoch leaves best.pt alone: it begins again."""
+    store = open_store(folder)
+    recipe = Recipe(name="tiny", epochs=1, batch=8, model="invariant-gnn-small")
+    Trainer(store, recipe, tmp_path).train()
+    first = load_checkpoint(tmp_path / "best.pt")
+    (tmp_path / "best.pt").unlink()
+    with pytest.raises(InputError, match=r"best\.pt: missing beside last\.pt"):
+        Trainer(store, recipe, tmp_path, resume=True)  # might end without any
+    (tmp_path / "last.pt").unlink()
+    for content, asked in (({**first, "epoch": 2}, recipe), (first, recipe.model_copy(update={"seed": 1}))):
+        save_checkpoint(tmp_path / "best.pt", content)
+        before = (tmp_path / "best.pt").read_bytes()
+        with pytest.raises(InputError, match=r"the best\.pt of another training is there.*another --out"):
+            Trainer(store, asked, tmp_path)
+        assert (tmp_path / "best.pt").read_bytes() == before
+    save_checkpoint(tmp_path / "best.pt", first)
+    Trainer(store, recipe, tmp_path)

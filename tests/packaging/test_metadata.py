@@ -42,6 +42,12 @@ def test_licence_is_apache_2() -> None:
     )
 
 
+def test_torch_has_the_optimiser_of_the_default_recipe() -> None:
+    """`torch.optim.Muon` came with 2.9; an older torch was accepted, and training ended in a traceback."""
+    (wanted,) = (r for r in PROJECT["project"]["optional-dependencies"]["learn"] if r.startswith("torch"))
+    assert [int(part) for part in wanted.removeprefix("torch>=").split(".")] >= [2, 9]
+
+
 def test_there_is_one_version() -> None:
     assert "version" in PROJECT["project"]["dynamic"]
     assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "tisim.__version__"}

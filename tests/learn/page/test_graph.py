@@ -117,6 +117,12 @@ def test_what_has_no_page_is_refused(predictor: Predictor, tmp_path: Path) -> No
     assert not (tmp_path / "poke.html").exists()
     with pytest.raises(InputError, match="--shape shape-9: expected one of shape-0"):
         content_of(predictor, shapes=["shape-9"])
+    store = predictor.store
+    part = dataclasses.replace(store, done=store.done & (store.shape != 0))
+    with pytest.raises(
+        InputError, match="--shape shape-0: expected one of shape-1, shape-2"
+    ):  # not simulated
+        content_of(Predictor(predictor.run, part), shapes=["shape-0"])
     other = Predictor(dataclasses.replace(predictor.run, model=torch.nn.Linear(1, 1)), predictor.store)
     with pytest.raises(InputError, match="expected one run of invariant-gnn or invariant-gnn-small"):
         content_of(other)

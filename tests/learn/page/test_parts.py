@@ -59,7 +59,11 @@ def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None
         stated = json.loads(file.read("page.json"))
     bare = json.dumps({**stated, "about": {}}).encode()
     (tmp_path / "text.zip").write_text("no zip")
+    locked = bytearray(saved.read_bytes())
+    locked[locked.index(b"PK\x01\x02") + 8] |= 1  # the first entry's bit of encryption
+    (tmp_path / "locked.zip").write_bytes(locked)
     cases = {
+        tmp_path / "locked.zip": "expected the parts of a page",
         tmp_path / "none.zip": "expected the parts of a page",
         tmp_path / "text.zip": "expected the parts of a page",
         _without(saved, tmp_path / "less.zip", "poke.onnx", None): "expected the parts of a page",
