@@ -89,7 +89,7 @@ def card(results: Sequence[Calibration], experiment: Experiment) -> dict[str, An
         "provenance": _provenance(results, chosen, by_law, filled, experiment),
         "fitted_to": {
             **fitted_to(experiment, chosen.material, objective=chosen.objective),
-            **({} if chosen.status == "converged" else {"status": chosen.status, "why": _why(chosen)}),
+            **({} if chosen.status == "converged" else {"status": chosen.status, "why": chosen.reason}),
         },
         "uncertainty": {
             "shear_modulus_low": low,

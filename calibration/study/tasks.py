@@ -29,7 +29,7 @@ from tisim import laws
 from tisim.parallel.extensions import digest_of_code, is_own
 
 # Raised whenever the objective or the search changes: their histories would not fit together.
-FORMAT = 10
+FORMAT = 11
 
 
 @dataclass(frozen=True, kw_only=True)
