@@ -43,7 +43,9 @@ SLACK = 2.0
 SUMS = 0.005
 TOUCHES = 5e-6  # m: facets nearer to the rod than this may carry its force
 INSIDE = 0.1  # tolerance of the interior solve, relative to the solver's
-_ITERATIONS, _HALVINGS = 25, 5
+_ITERATIONS, _HALVINGS = 40, 5
+_PARTS = tuple(0.5**k for k in range(7))  # of a Newton step: the first one that brings it nearer is taken
+_SLOW = 0.3  # what an iteration leaves of the forces, above which the tangent is factorised anew
 
 
 class NotCheckedError(Exception):
@@ -349,19 +351,42 @@ class _Inside:
             change = (body.internal_forces(x + small * start)[0] - force) / small
             start[free] = -solver.solve(change[free] + force[free])
             x = x + start
-            for iteration in range(_ITERATIONS):
-                force, least = body.internal_forces(x)
-                residual = force[free]
-                if least <= 0.0 or not np.isfinite(residual).all():
-                    return None
-                if float(np.linalg.norm(residual)) <= tolerance:
+            force, least = body.internal_forces(x)
+            left = float(np.linalg.norm(force[free]))
+            if not (least > 0.0 and np.isfinite(left)):
+                return None
+            exact = False  # the factor is of the tangent at x; modified Newton: kept while it serves
+            for _ in range(_ITERATIONS):
+                if left <= tolerance:
                     return x
-                if iteration % 3 == 2:  # modified Newton: a factorisation serves three iterations
+                found = self._nearer(x, solver.solve(force[free]), left)
+                if found is None and exact:
+                    return None
+                slow = found is None
+                if found is not None:
+                    slow = found[2] > _SLOW * left
+                    x, force, left = found
+                exact = slow
+                if slow:
                     solver.factorise(body.stiffness(x)[0])
-                x = x.copy()
-                x[free] -= solver.solve(residual)
         except LinearSolveError:
             return None
+        return None
+
+    def _nearer(self, x: Array, step: Array, left: float) -> tuple[Array, Array, float] | None:
+        """Positions on the way of a step that turns no element over and leaves less than `left` [N].
+
+        Also the forces there, and what they leave; None if there are none. Where tissue is crushed, a whole
+        step turns elements over.
+        """
+        free = self._free
+        for part in _PARTS:
+            there = x.copy()
+            there[free] -= part * step
+            force, least = self._body.internal_forces(there)
+            size = float(np.linalg.norm(force[free]))
+            if least > 0.0 and size < left:
+                return there, force, size
         return None
 
 

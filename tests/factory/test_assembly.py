@@ -89,6 +89,29 @@ def _lifted(poke: PokeData) -> PokeData:
     return dataclasses.replace(poke, surface=surface)
 
 
+def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> None:
+    """Newton's step, ten times as long: the part that brings the interior nearest to equilibrium first."""
+    data = open_dataset(simulated)
+    mesh, poke = _assembly._mesh(data, 0), data.poke(0)
+    surface = np.unique(mesh.facet_sets["surface"])
+    moved = poke.surface - poke.surface_rest
+    inside = _assembly._Inside(mesh, _assembly._material(data, 0), surface, moved, np.full(2, 1e-5))
+    at_rest = next(iter(inside))
+    body, solver, free = inside._body, inside._discretisation.solver, inside._free
+    away = at_rest.copy()
+    away[free] += 1e-6 * np.random.default_rng(1).standard_normal((len(at_rest), 3))[free]
+    blocks, force, _ = body.stiffness(away)
+    solver.factorise(blocks)
+    step, left = solver.solve(force[free]), float(np.linalg.norm(force[free]))
+    found = inside._nearer(away, 10 * step, left)
+    assert found is not None
+    there, forces, size = found
+    assert size == pytest.approx(np.linalg.norm(forces[free]))
+    assert size == pytest.approx(0.25 * left, rel=0.1)
+    np.testing.assert_allclose(there[free], (away[free] - 1.25 * step), atol=1e-12)
+    assert inside._nearer(away, -step, left) is None
+
+
 @pytest.mark.parametrize(
     ("change", "frames", "fault"),
     [

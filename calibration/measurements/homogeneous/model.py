@@ -422,7 +422,7 @@ class HomogeneousModel(MeasurementModel):
             if r.name in self.from_data or not r.scatter_points:
                 continue
             used = self.noise.used[self.row_record == k]
-            share = r.scatter_points / max(1, np.count_nonzero(used))
+            share = r.scatter_points / max(1, int(np.count_nonzero(used)))
             branch = self.branch(k)
             each = {b: share * np.count_nonzero(used & (branch == b)) for b in np.unique(branch)}
             for row, b in zip(np.flatnonzero(self.row_record == k), branch, strict=True):
