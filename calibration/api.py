@@ -28,7 +28,7 @@ from pathlib import Path
 
 from calibration.errors import InputError, OptionError
 from calibration.experiment import Experiment, read
-from calibration.fit_plan import plan_fit, processes
+from calibration.fit_plan import names_of, plan_fit, processes
 from calibration.fit_request import FitRequest
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import DiagnosisResult, Fits, PredictionResult, Reconstruction
@@ -62,7 +62,7 @@ def fit(
     experiment: str | Path | Experiment,
     *,
     model: str | Sequence[str] = FitRequest.model,
-    materials: Sequence[str] | None = None,
+    materials: str | Sequence[str] | None = None,
     terms: int = FitRequest.terms,
     time: str | None = None,
     damage: str | None = None,
@@ -89,7 +89,7 @@ def fit(
     experiment : path or Experiment
     model : str or sequence of str
         Laws; "all" for every law that is registered in `tisim.laws`.
-    materials : sequence of str, optional
+    materials : str or sequence of str, optional
         All of the experiment where left out.
     terms : int
         Terms of a series law (Ogden).
@@ -167,7 +167,7 @@ def diagnose(
     experiment: str | Path | Experiment,
     *,
     domain: str | None = None,
-    without: Sequence[str] = (),
+    without: str | Sequence[str] = (),
     simulator: str = "ours",
     law: str = "auto",
     gain: bool = True,
@@ -183,7 +183,7 @@ def diagnose(
     experiment : path or Experiment
     domain : str, optional
         Kind of measurements, where the experiment has several (`calibration.diagnosis.kinds()`).
-    without : sequence of str
+    without : str or sequence of str
         Effects to leave out of the catalogue.
     simulator : str
         Simulator whose own faults are looked for as well.
@@ -223,7 +223,9 @@ def diagnose(
     data = experiment if isinstance(experiment, Experiment) else read(Path(experiment))
     check_names({t.material for t in data.trials})
     report = on_progress or to_log
-    make = partial(model_of, data, kind=domain, without=list(without), simulator=simulator, workers=workers)
+    make = partial(
+        model_of, data, kind=domain, without=names_of(without), simulator=simulator, workers=workers
+    )
     try:
         found, model = diagnose_with_law(
             make,
@@ -247,7 +249,7 @@ def predict(
     baseline: str | Path | None = None,
     domain: str | None = None,
     law: str = "auto",
-    extend: Sequence[str] = (),
+    extend: str | Sequence[str] = (),
     specimen_scatter: float | None = None,
     seed: int = 0,
     workers: int | None = None,
@@ -270,7 +272,7 @@ def predict(
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
     law : str
         Of the baseline beside which a fit looks for causes, as in `diagnose`.
-    extend : sequence of str
+    extend : str or sequence of str
         Effects of the extension beside `calibrate`, each in all trials, in place of a search for causes.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
@@ -299,7 +301,9 @@ def predict(
     if calibrate is not None and predict is None:
         raise OptionError("predict", None, "expected the trials to predict, beside --calibrate")
     if cards is not None and extend:
-        raise OptionError("extend", ", ".join(extend), "expected without cards, which state their effects")
+        raise OptionError(
+            "extend", ", ".join(names_of(extend)), "expected without cards, which state their effects"
+        )
     if cards is not None and law != "auto":
         raise OptionError("law", law, "expected without cards, which state their laws")
     if calibrate is not None and baseline is not None:
@@ -325,7 +329,7 @@ def predict(
             wanted,
             domain=domain,
             law=law,
-            extend=tuple(extend),
+            extend=tuple(names_of(extend)),
             seed=seed,
             workers=workers,
             on_progress=message,

@@ -130,6 +130,12 @@ def plan_fit(experiment: str | Path | Experiment, request: FitRequest) -> FitPla
     return FitPlan(tasks=tasks, experiment=OnSetup.of(data, setup), folder=folder, workers=count, rig=setup)
 
 
+def names_of(value: str | Sequence[str]) -> list[str]:
+    """Names as a list or as a text with commas, without empty ones."""
+    names = [n.strip() for n in value.split(",")] if isinstance(value, str) else list(value)
+    return [n for n in names if n]
+
+
 def law_names(model: str | Sequence[str]) -> list[str]:
     """Names of laws, each once; "all" for every law, those that are useful soonest first.
 
@@ -142,8 +148,7 @@ def law_names(model: str | Sequence[str]) -> list[str]:
 
     if model == "all":
         return by_cost(laws.names())
-    names = [n.strip() for n in model.split(",")] if isinstance(model, str) else list(model)
-    names = [n for n in names if n]
+    names = names_of(model)
     for name in names:
         if name not in laws.names():
             raise OptionError("model", name, f"expected all or some of {', '.join(laws.names())}")
@@ -159,10 +164,11 @@ def processes(workers: int | None) -> int:
     return workers or cores()
 
 
-def _materials(wanted: Sequence[str] | None, data: Experiment) -> list[str]:
+def _materials(asked: str | Sequence[str] | None, data: Experiment) -> list[str]:
     used = {t.material for t in data.trials}
-    if wanted is None:
+    if asked is None:
         return [m for m in data.materials if m in used]
+    wanted = names_of(asked)
     if not wanted:
         raise OptionError("material", None, f"expected some of {', '.join(sorted(used))}, got none")
     for name in wanted:

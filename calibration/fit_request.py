@@ -24,7 +24,7 @@ class FitRequest:
 
     out: str | Path
     model: str | Sequence[str] = "all"
-    materials: Sequence[str] | None = None
+    materials: str | Sequence[str] | None = None
     terms: int = 1
     time: str | None = None
     damage: str | None = None

@@ -112,10 +112,12 @@ def read_rig(path: Path) -> Rig:
     Raises
     ------
     InputError : the file cannot be used, for example because it is a record of other measurements or has
-        effects of a simulator only. The sentence names the key.
-    OSError : the file cannot be read.
+        effects of a simulator only, or cannot be read. The sentence names the key.
     """
-    content = path.read_bytes()
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the rig file cannot be read: {error.strerror}") from error
     file = parse(content, path, RigFile)
     # a fault of the simulator that was diagnosed is not in the beams of the one that calibrates
     kept = [k for k, f in enumerate(file.effects) if f.belongs_to != "simulator"]

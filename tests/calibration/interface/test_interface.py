@@ -154,6 +154,8 @@ def test_progress_is_one_callback(folder: Path, caplog: pytest.LogCaptureFixture
         ({"model": "hooke"}, "model hooke: expected all or some of"),
         ({"model": []}, "model: expected at least one law"),
         ({"materials": ["chalk"]}, "material chalk: expected some of rubber"),
+        ({"materials": "rubber, chalk"}, "material chalk: expected some of rubber"),
+        ({"rig": "none.yaml"}, "none.yaml: the rig file cannot be read: No such file"),
         ({"objective": "guess"}, "objective guess: expected likelihood or dice"),
     ],
 )
@@ -169,6 +171,14 @@ def test_options_of_a_diagnosis_are_checked(folder: Path) -> None:
         calibration.diagnose(folder, seed=-3)
     with pytest.raises(InputError, match="nonsense"):
         calibration.diagnose(folder, domain="nonsense")
+
+
+def test_a_single_name_is_one_name(folder: Path) -> None:
+    """Not one of each letter."""
+    with pytest.raises(InputError, match="nonsense"):
+        calibration.diagnose(folder, without="nonsense", workers=1)
+    with pytest.raises(InputError, match="extend viscosity: expected without cards"):
+        calibration.predict(folder, folder, extend="viscosity")
 
 
 def test_a_diagnosis_prints_itself(folder: Path) -> None:
