@@ -84,14 +84,13 @@ def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[An
     depth : travel since first contact in indenter radii, shape (...).
     radius : of the indenter [m].
     """
-    way, fall = (xp.asarray(v, dtype=blocked.dtype) for v in (WAY, _FALL))
-    tip = depth * radius
-    found = []
-    for b in blocked:
-        clear = 1 / (((b * fall).sum(-1) + _END) * radius)  # harmonic mean, as of the cover
-        found += [xp.log(clear / 4), 1 / clear, depth / clear]
-        for beyond in BEYOND:
-            at = xp.clip((tip + beyond)[..., None], WAY[0], WAY[-1])
-            hat = xp.clip(1 - abs(way - at) / STEP, 0.0, None)  # interpolates between two samples
-            found.append((b * hat).sum(-1))
-    return found
+    way, fall, beyond = (xp.asarray(v, dtype=blocked.dtype) for v in (WAY, _FALL, BEYOND))
+    clear = 1 / (((blocked * fall).sum(-1) + _END) * radius)  # a harmonic mean, as of the cover
+    at = xp.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
+    hat = xp.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
+    seen = (blocked[..., None, :] * hat).sum(-1)
+    return [
+        value
+        for log, inverse, over, there in zip(xp.log(clear / 4), 1 / clear, depth / clear, seen, strict=True)
+        for value in (log, inverse, over, *(there[..., k] for k in range(len(BEYOND))))
+    ]
