@@ -183,7 +183,7 @@ def evaluate(
     with plain_errors():
         from learn.evaluation import evaluate as evaluate_runs
         from learn.evaluation import replaced_text, save_intervals
-        from learn.evaluation.report import tables, verdict, write_report
+        from learn.evaluation.report import cautions, tables, verdict, write_report
         from learn.training import check_dataset, load_run, make_device, open_dataset
 
         load_plugins(plugin or [])
@@ -210,7 +210,8 @@ def evaluate(
                 print_table(console, title, heads, rows)
             else:
                 console.print(f"{title}: {' '.join(notes[:-1])}")
-        console.print(verdict(found))
+        for sentence in (verdict(found), *cautions(found)):
+            console.print(sentence)
         console.print(f"{folder}: report.html, tables.json, pictures")
         if transfer:
             return

@@ -106,6 +106,12 @@ def cautions(found: Evaluation) -> list[str]:
             f"{counted(found.pokes, 'test poke').capitalize()} cannot say how the model does on others: "
             f"expect {_FEW_POKES} or more for figures to compare."
         )
+    timeless = [str(run.folder) for run in found.runs if not run.model.takes_clock]
+    if timeless and found.store.clock is not None:
+        lines.append(
+            f"Trained without time: {', '.join(timeless)}. The answer is the same at any time and speed, but "
+            "frames of this dataset differ in both."
+        )
     return lines
 
 

@@ -14,6 +14,7 @@ import torch
 import zarr
 
 import learn
+import learn.evaluate
 from learn.data import MemoryDataset, StreamDataset, open_store, split_pokes, statistics
 from learn.errors import InputError
 from learn.evaluation import parts_of
@@ -24,6 +25,7 @@ from learn.onnx_bundle import CLOCK as CLOCK_NAMES
 from learn.onnx_bundle import TOLERANCE, OnnxBundle, write_bundle
 from learn.training import Recipe, Trainer, load_run
 from learn.validity import frame_distances
+from tests.learn.commands import call, train_small
 from tests.learn.small_store import write_manifest, write_store
 
 PHASES = ("load", "hold", "retract", "reload", "rest")
@@ -230,3 +232,15 @@ def test_time_counts_in_the_distance_of_an_evaluation(run: Path, tmp_path: Path)
     inside = frame_distances(loaded.domain, store, *own, found.clock)
     later = frame_distances(loaded.domain, store, *own, found.clock * [1e3, 1.0, 1.0])
     assert (later > inside + 1.0).all()
+
+
+def test_a_model_without_time_on_a_dataset_with_time_is_said_to_be_one(
+    folder: Path, run: Path, tmp_path: Path
+) -> None:
+    still = train_small(write_store(tmp_path / "still.zarr", seed=4), tmp_path / "still", "--epochs", 1)
+    flags = ("--no-clouds", "--no-baselines", "--threads", 1)
+    other = call(learn.evaluate.app, still, "--dataset", folder, "--transfer", *flags)
+    assert f"Trained without time: {still}" in other.output.replace("\n", "")
+    own = call(learn.evaluate.app, run, *flags)
+    assert (own.exit_code, other.exit_code) == (0, 0)
+    assert "Trained without time" not in own.output
