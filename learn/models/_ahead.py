@@ -84,7 +84,7 @@ def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[An
     depth : travel since first contact in indenter radii, shape (...).
     radius : of the indenter [m].
     """
-    way, fall, beyond = (xp.asarray(v, dtype=blocked.dtype) for v in (WAY, _FALL, BEYOND))
+    way, fall, beyond = (_beside(v, blocked) for v in (WAY, _FALL, BEYOND))
     clear = 1 / (((blocked * fall).sum(-1) + _END) * radius)  # a harmonic mean, as of the cover
     at = xp.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
     hat = xp.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
@@ -94,3 +94,10 @@ def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[An
         for log, inverse, over, there in zip(xp.log(clear / 4), 1 / clear, depth / clear, seen, strict=True)
         for value in (log, inverse, over, *(there[..., k] for k in range(len(BEYOND))))
     ]
+
+
+def _beside(values: Any, array: Any) -> Any:
+    """Values as an array of the same library, type and device."""
+    if isinstance(array, Tensor):
+        return torch.as_tensor(values, dtype=array.dtype, device=array.device)
+    return np.asarray(values, dtype=array.dtype)

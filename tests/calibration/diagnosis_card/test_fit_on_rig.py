@@ -113,7 +113,7 @@ def test_a_fit_on_one_rig_does_not_go_on_another(experiment: Path, corrected: Pa
 @pytest.mark.parametrize(
     ("content", "more", "words"),
     [
-        (None, (), "cannot use"),
+        (None, (), "the rig file cannot be read"),
         ("effects: []", (), "key format"),
         ("{", (), "expected valid YAML"),
         ("", ("--objective", "dice"), "expected --objective likelihood"),
