@@ -23,7 +23,7 @@ Source = Literal["stated", "data"]
 
 FEWEST = 12  # least number of third differences for an estimate of a record's scatter
 # Points of a curve per degree of freedom of the noise that its scatter shows: it is the median of residuals
-# from neighbours, which are correlated (of 1500 curves of 60 to 300 points 3.9 to 4.2).
+# from neighbours, which are correlated (3.4 to 4.1 for 20 to 300 points: studies/diagnosis).
 POINTS_PER_FREEDOM = 4.0
 FACTOR = 2.0  # ratio between stated and observed noise from which they contradict each other
 _WEIGHTS = np.array([1.0, -3.0, 3.0, -1.0])  # third difference: zero for a parabola

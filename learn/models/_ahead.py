@@ -26,6 +26,7 @@ LAYERS = 32  # of a column; the stored levels are averaged over them
 _BETWEEN = np.append(STEP / 4, WAY + STEP / 2)
 _FALL = 1 / _BETWEEN[:-1] - 1 / _BETWEEN[1:]
 _END = 1 / _BETWEEN[-1]
+_CONSTANTS = tuple(np.asarray(v, dtype=np.float32) for v in (WAY, _FALL, BEYOND))
 
 
 def layers_of(rigid: Tensor) -> Tensor:
@@ -75,16 +76,21 @@ def blocked(
     return (rigid[:, :, None] * before).amax(dim=3)  # a running maximum; ONNX has no operation for it
 
 
-def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[Any]:
+def of_path(blocked: Any, depth: Any, radius: float) -> list[Any]:
     """Invariants of what lies ahead, lengths in indenter radii, N_AHEAD arrays shaped as `depth`.
 
     Parameters
     ----------
-    blocked : shape (len(WIDTHS), ..., len(WAY))
+    blocked : shape (len(WIDTHS), ..., len(WAY)), a tensor or an array of float32.
     depth : travel since first contact in indenter radii, shape (...).
     radius : of the indenter [m].
     """
-    way, fall, beyond = (_beside(v, blocked) for v in (WAY, _FALL, BEYOND))
+    if isinstance(blocked, Tensor):
+        xp: Any = torch
+        like: Any = {"dtype": blocked.dtype, "device": blocked.device}
+        way, fall, beyond = (torch.as_tensor(v, **like) for v in (WAY, _FALL, BEYOND))
+    else:
+        xp, (way, fall, beyond) = np, _CONSTANTS
     clear = 1 / (((blocked * fall).sum(-1) + _END) * radius)  # a harmonic mean, as of the cover
     at = xp.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
     hat = xp.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
@@ -94,10 +100,3 @@ def of_path(blocked: Any, depth: Any, radius: float, xp: Any = torch) -> list[An
         for log, inverse, over, there in zip(xp.log(clear / 4), 1 / clear, depth / clear, seen, strict=True)
         for value in (log, inverse, over, *(there[..., k] for k in range(len(BEYOND))))
     ]
-
-
-def _beside(values: Any, array: Any) -> Any:
-    """Values as an array of the same library, type and device."""
-    if isinstance(array, Tensor):
-        return torch.as_tensor(values, dtype=array.dtype, device=array.device)
-    return np.asarray(values, dtype=array.dtype)

@@ -121,7 +121,7 @@ class SinglePoke:
         near /= near.sum(axis=1, keepdims=True)  # (w, n)
         here = self._normals @ near[0]
         log_deep = math.log(deep + _contact.SHALLOW)
-        ahead = _ahead.of_path(self._path(r64, start, direction), np.float64(deep), self._radius, np)
+        ahead = _ahead.of_path(self._path(r64, start, direction), np.float64(deep), self._radius)
         about, toward = self._about(r, near, here, push, (deep, log_deep, modulus), ahead)
 
         unit, along, aside = self._fill(r, square, push, deep)

@@ -14,6 +14,7 @@ from factory import _assembly, _build
 from factory._assembly import NotCheckedError, check_assembly, check_poke, nodal_forces
 from factory._build import build_dataset
 from factory._execution import run_poke
+from factory._interior import Interior
 from factory.plan import make_plan
 from factory.reader import Dataset, PokeData, open_dataset
 from factory.recipe import load_recipe
@@ -95,7 +96,7 @@ def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> No
     mesh, poke = _assembly._mesh(data, 0), data.poke(0)
     surface = np.unique(mesh.facet_sets["surface"])
     moved = poke.surface - poke.surface_rest
-    inside = _assembly._Inside(mesh, _assembly._material(data, 0), surface, moved, np.full(2, 1e-5))
+    inside = Interior(mesh, _assembly._material(data, 0), surface, moved, np.full(2, 1e-5))
     at_rest = next(iter(inside))
     body, solver, free = inside._body, inside._discretisation.solver, inside._free
     away = at_rest.copy()

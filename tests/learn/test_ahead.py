@@ -113,6 +113,6 @@ def test_one_poke_at_a_time_has_the_same_samples(site: tuple[float, float], degr
     again = path((scene.points.numpy() - elsewhere).T / RADIUS, elsewhere, push)
     np.testing.assert_allclose(again, _blocked(scene, elsewhere, push)[:, 0], atol=1e-6)
     deep = 4e-3 / RADIUS
-    alone = ahead.of_path(found, np.float64(deep), RADIUS, np)
+    alone = ahead.of_path(found, np.float64(deep), RADIUS)
     both = ahead.of_path(_blocked(scene, start, push), torch.tensor([deep], dtype=torch.float64), RADIUS)
     np.testing.assert_allclose(alone, [float(v) for v in both], atol=1e-5)
