@@ -85,12 +85,12 @@ def of_path(blocked: Any, depth: Any, radius: float) -> list[Any]:
     depth : travel since first contact in indenter radii, shape (...).
     radius : of the indenter [m].
     """
+    xp: Any = np
+    constants: Any = _CONSTANTS
     if isinstance(blocked, Tensor):
-        xp: Any = torch
-        like: Any = {"dtype": blocked.dtype, "device": blocked.device}
-        way, fall, beyond = (torch.as_tensor(v, **like) for v in (WAY, _FALL, BEYOND))
-    else:
-        xp, (way, fall, beyond) = np, _CONSTANTS
+        xp = torch
+        constants = (torch.as_tensor(v).to(blocked) for v in (WAY, _FALL, BEYOND))
+    way, fall, beyond = constants
     clear = 1 / (((blocked * fall).sum(-1) + _END) * radius)  # a harmonic mean, as of the cover
     at = xp.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
     hat = xp.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
