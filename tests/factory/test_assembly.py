@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -111,6 +112,12 @@ def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> No
     assert size == pytest.approx(0.25 * left, rel=0.1)
     np.testing.assert_allclose(there[free], (away[free] - 1.25 * step), atol=1e-12)
     assert inside._nearer(away, -step, left) is None
+    # a whole step that leaves nothing, but turns an element over; half of it does not
+    answers = iter([(0 * force, -0.1), (0.5 * force, 0.2)])
+    inside._body = SimpleNamespace(internal_forces=lambda _: next(answers))  # type: ignore[assignment]
+    half = inside._nearer(away, step, left)
+    assert half is not None
+    np.testing.assert_allclose(half[0][free], away[free] - 0.5 * step, atol=1e-15)
 
 
 @pytest.mark.parametrize(
