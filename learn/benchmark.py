@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import statistics
 import tempfile
 import time
@@ -102,9 +103,13 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
             )
             middle, best = timed(lambda single=single, poke=poke: single(*poke), repeats)  # type: ignore[misc]
             times.append((f"{name}, one at a time", str(threads), middle, best))
-            touch = Predictor(run, store).real_time(interior)
-            middle, best = timed(lambda touch=touch: _touched(touch), repeats)  # type: ignore[misc]
-            times.append((f"{name}, in real time with intervals", str(threads), middle, best))
+            touch, number = Predictor(run, store).real_time(interior), itertools.count()
+            for what, apart in (("", 0.0), (", first of a contact", 1e-7)):
+                middle, best = timed(
+                    lambda touch=touch, apart=apart, number=number: _touched(touch, next(number), apart),  # type: ignore[misc]
+                    repeats,
+                )
+                times.append((f"{name}, in real time with intervals{what}", str(threads), middle, best))
         middle, best = timed(lambda: model.decode(encoded, one), repeats)
         times.append((f"{name}, as a batch of one", str(threads), middle, best))
         middle, best = timed(lambda: model.decode(encoded, many), max(3, repeats // 10))
@@ -123,9 +128,14 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     return times
 
 
-def _touched(touch: RealTime) -> None:
-    """Evaluate everything that a real-time program may need of a poke."""
-    answer = touch(site=(3e-3, -4e-3), direction=(0.0, 0.6, -0.8), depth=5e-3)
+def _touched(touch: RealTime, number: int, apart: float) -> None:
+    """Evaluate everything that a real-time program may need of a poke.
+
+    The next deeper of one contact, whose depth goes from 1 to 5 mm again and again, or of the next contact,
+    `apart` [m] from the last.
+    """
+    site, depth = (3e-3 + number * apart, -4e-3), 1e-3 + 1e-6 * (number % 4000)
+    answer = touch(site=site, direction=(0.0, 0.6, -0.8), depth=depth)
     assert np.isfinite(answer.distance)
     assert answer.radius is None or np.isfinite(answer.radius).all()
 

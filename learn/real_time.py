@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import torch
@@ -24,7 +24,7 @@ from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
 from learn.scene_file import kind_of, load_poke, scene_and_poke
-from learn.validity import poke_values
+from learn.validity import cover_at, poke_values
 
 if TYPE_CHECKING:
     from learn.evaluation import Intervals
@@ -68,8 +68,19 @@ class Answer:
         return self._intervals.radius_at_mm(size, away=away, depth=depth, distance=distance) * 1e-3
 
 
+class _Contact(NamedTuple):
+    """First contact: the tip [m], the cover below it [m], and the points' distances from it (n,) [m]."""
+
+    start: Floats
+    cover: float
+    away: Floats
+
+
 class RealTime:
     """One interior of a predictor, made by `Predictor.real_time`.
+
+    What depends on the contact alone (`site` and `direction`) is kept for the next poke: the first answer of
+    a contact takes longer than those at other depths.
 
     Parameters
     ----------
@@ -113,6 +124,7 @@ class RealTime:
         self._intervals = predictor.intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
+        self._last: tuple[tuple[float, ...], _Contact] | None = None
 
     def __call__(
         self,
@@ -147,10 +159,19 @@ class RealTime:
             raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
         if not 0.0 < self.modulus < math.inf:
             raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {self.modulus}")
-        start = self._setup.first_touch(site, push)
+        key = (*site, *push)
+        if self._last is None or self._last[0] != key:
+            self._last = key, self._contact(site, push)
+        start, cover, from_contact = self._last[1]
         u, force = self._single(start, push, depth, self.modulus)
         values = poke_values(
-            self._setup, self._interior, start=start, direction=push, depth=depth, modulus=self.modulus
+            self._setup,
+            self._interior,
+            start=start,
+            direction=push,
+            depth=depth,
+            modulus=self.modulus,
+            cover=cover,
         )
         distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
         if depth <= 0.0:
@@ -158,8 +179,7 @@ class RealTime:
         away, interval, intervals = None, None, None
         if self._intervals is not None and depth > 0.0:
             intervals = self._intervals.over(self._interior.size, values["cover_mm"])
-            r = self._points - start[:, None]
-            away = np.sqrt((r * r).sum(axis=0))
+            away = from_contact
             factor = math.exp(intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
             interval = (force / factor, force * factor)
         return Answer(
@@ -172,3 +192,9 @@ class RealTime:
             _away=away,
             _depth=depth,
         )
+
+    def _contact(self, site: Sequence[float], push: Floats) -> _Contact:
+        start = self._setup.first_touch(site, push)
+        r = self._points - start[:, None]
+        cover = cover_at(self._setup, self._interior, start, push)
+        return _Contact(start, cover, np.sqrt((r * r).sum(axis=0)))

@@ -326,10 +326,10 @@ def interior_at(store: Store, poke: int) -> tuple[float, float]:
     """Size of the inclusion of one stored poke, and the cover over it [mm]."""
     setup = store.setup_of(poke)
     interior = interior_of(setup, store.profile[int(store.geometry[poke])])
-    return interior.size, 1e3 * _cover(setup, interior, store.path_start[poke], store.direction[poke])
+    return interior.size, 1e3 * cover_at(setup, interior, store.path_start[poke], store.direction[poke])
 
 
-def _cover(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
+def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
     """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
     x, y = (setup.points[:, :2] - setup.contact_site(start, direction)).T
     square = x * x + y * y
@@ -346,6 +346,7 @@ def poke_values(
     depth: float,
     modulus: float,
     clock: Floats | None = None,
+    cover: float | None = None,
 ) -> dict[str, float]:
     """Values of `QUANTITIES` for one poke, in their order, and of `CLOCK_QUANTITIES` if it has a clock.
 
@@ -353,10 +354,12 @@ def poke_values(
     ----------
     interior : from `interior_of`.
     start, direction, depth, modulus, clock : the poke in SI units, as in `learn.models.Pokes`.
+    cover : `cover_at` of this contact, if it is already known.
     """
     length, width, height = setup.block_size
     site = setup.contact_site(start, direction)
-    cover, level = _cover(setup, interior, start, direction), height / len(setup.level_depth)
+    level = height / len(setup.level_depth)
+    cover = cover_at(setup, interior, start, direction) if cover is None else cover
     cosine = min(1.0, float(-direction[2]))
     to_side = float((np.array([length, width]) / 2 - np.abs(site - setup.middle)).min())
     timed = {}

@@ -2,7 +2,7 @@
 
 The cover below the contact does not say what an inclined indenter meets, nor whether one that goes down near
 a rim meets the inclusion or passes it. `blocked` takes samples along the push, each a mean over the columns
-near the axis; `of_path` makes invariants of them, in torch or in NumPy.
+near the axis; `of_path` makes invariants of them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LAYERS = 32  # of a column; the stored levels are averaged over them
 _BETWEEN = np.append(STEP / 4, WAY + STEP / 2)
 _FALL = 1 / _BETWEEN[:-1] - 1 / _BETWEEN[1:]
 _END = 1 / _BETWEEN[-1]
-_CONSTANTS = tuple(np.asarray(v, dtype=np.float32) for v in (WAY, _FALL, BEYOND))
+_WAY32, _FALL32, _BEYOND32 = (np.asarray(v, dtype=np.float32) for v in (WAY, _FALL, BEYOND))
 
 
 def layers_of(rigid: Tensor) -> Tensor:
@@ -76,27 +76,31 @@ def blocked(
     return (rigid[:, :, None] * before).amax(dim=3)  # a running maximum; ONNX has no operation for it
 
 
-def of_path(blocked: Any, depth: Any, radius: float) -> list[Any]:
-    """Invariants of what lies ahead, lengths in indenter radii, N_AHEAD arrays shaped as `depth`.
+def clear(blocked: Any, radius: float) -> Any:
+    """Way to what is rigid, in indenter radii: a harmonic mean, as of the cover, (len(WIDTHS), ...)."""
+    fall: Any = _FALL32 if isinstance(blocked, np.ndarray) else torch.as_tensor(_FALL32).to(blocked)
+    return 1 / (((blocked * fall).sum(-1) + _END) * radius)
+
+
+def of_path(blocked: Tensor, depth: Tensor, radius: float) -> list[Tensor]:
+    """Invariants of what lies ahead, lengths in indenter radii, N_AHEAD tensors shaped as `depth`.
 
     Parameters
     ----------
-    blocked : shape (len(WIDTHS), ..., len(WAY)), a tensor or an array of float32.
+    blocked : shape (len(WIDTHS), ..., len(WAY)).
     depth : travel since first contact in indenter radii, shape (...).
     radius : of the indenter [m].
     """
-    xp: Any = np
-    constants: Any = _CONSTANTS
-    if isinstance(blocked, Tensor):
-        xp = torch
-        constants = (torch.as_tensor(v).to(blocked) for v in (WAY, _FALL, BEYOND))
-    way, fall, beyond = constants
-    clear = 1 / (((blocked * fall).sum(-1) + _END) * radius)  # a harmonic mean, as of the cover
-    at = xp.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
-    hat = xp.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
-    seen = (blocked[..., None, :] * hat).sum(-1)
+    way, beyond = (torch.as_tensor(v).to(blocked) for v in (_WAY32, _BEYOND32))
+    at = torch.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])
+    hat = torch.clip(1 - abs(way - at[..., None]) / STEP, 0.0, None)  # interpolates between two samples
+    return invariants(clear(blocked, radius), depth, (blocked[..., None, :] * hat).sum(-1))
+
+
+def invariants(clear: Any, depth: Any, there: Any, xp: Any = torch) -> list[Any]:
+    """Invariants from the way to what is rigid, the depth, and what is rigid at `BEYOND`, as in `of_path`."""
     return [
         value
-        for log, inverse, over, there in zip(xp.log(clear / 4), 1 / clear, depth / clear, seen, strict=True)
-        for value in (log, inverse, over, *(there[..., k] for k in range(len(BEYOND))))
+        for log, inverse, over, seen in zip(xp.log(clear / 4), 1 / clear, depth / clear, there, strict=True)
+        for value in (log, inverse, over, *(seen[..., k] for k in range(len(BEYOND))))
     ]

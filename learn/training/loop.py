@@ -5,9 +5,12 @@ from __future__ import annotations
 import contextlib
 import copy
 import functools
+import itertools
 import math
 import time
+from collections import deque
 from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -43,6 +46,8 @@ _WARM_FRAMES = 600  # for the warm start
 _FEWEST = 0.4  # least fraction of the points under point dropout
 _FLOOR = 0.01  # fraction of the learning rate at the end of a cosine
 
+_Parts = list[tuple[Scene, Any, Batch]]  # of a batch, by scene: scene, prepared quantities, frames
+
 
 class DivergedError(Exception):
     """The loss diverged; the last good checkpoint is kept. The text is one sentence."""
@@ -65,6 +70,8 @@ class Trainer:
     epoch, step : epochs and steps done.
     split : frames of the three parts.
     model, ema : the network that is trained, and the moving average of its weights, which is kept.
+    ahead : number of batches that another thread prepares in advance. 0 on a CPU, where training keeps to the
+        threads that it was given; on a GPU the neighbourhoods of dropped points take longer than a step.
     """
 
     def __init__(
@@ -80,6 +87,7 @@ class Trainer:
         group = process_group or ProcessGroup(0, 1, torch.device("cpu"))
         self.store, self.recipe, self.folder, self.group = store, recipe, folder, group
         self.on_progress = on_progress
+        self.ahead = 0 if group.device.type == "cpu" else 2
         self.split: Split = split_of(store, recipe)
         rows = np.concatenate([self.split.train, self.split.validation])
         self.seen = sorted(set(contact_points(store, np.unique(store.frame_poke[rows])).tolist()))
@@ -227,28 +235,48 @@ class Trainer:
         torch.manual_seed(int(key.generate_state(1)[0]))
         done, total = 0, len(self.split.train)
         sums = torch.zeros(3, dtype=torch.float64)
-        for batch in self._batches():
-            loss = self._update(batch.to(self.group.device), done / total)
-            parts = torch.stack([loss.total, loss.displacement, loss.force]).detach().double().cpu()
-            if not bool(torch.isfinite(parts).all()):
+        for frames, parts in self._prepared():
+            loss = self._update(parts, done / total)
+            values = torch.stack([loss.total, loss.displacement, loss.force]).detach().double().cpu()
+            if not bool(torch.isfinite(values).all()):
                 raise DivergedError(f"epoch {self.epoch}: the loss is not finite")
-            sums += parts * len(batch)
-            done = min(done + len(batch) * self.group.world, total)
+            sums += values * frames
+            done = min(done + frames * self.group.world, total)
             self._report(done, None)
         means = [self.group.mean(float(v)) * self.group.world / max(done, 1) for v in sums]
         return dict(zip(("train_loss", "train_displacement_mm", "train_force"), means, strict=True))
 
-    def _update(self, batch: Batch, within: float) -> Loss:
+    def _prepared(self) -> Iterator[tuple[int, _Parts]]:
+        """Number of frames and augmented parts of each batch of an epoch, `ahead` batches in advance."""
+        steps = itertools.count(self.step)
+        if not self.ahead:
+            for batch in self._batches():
+                yield len(batch), self._parts(batch, next(steps))
+            return
+        waiting: deque[tuple[int, Future[_Parts]]] = deque()
+        with ThreadPoolExecutor(1) as worker:
+            for batch in self._batches():
+                waiting.append((len(batch), worker.submit(self._parts, batch, next(steps))))
+                if len(waiting) > self.ahead:
+                    frames, parts = waiting.popleft()
+                    yield frames, parts.result()
+            for frames, parts in waiting:
+                yield frames, parts.result()
+
+    def _parts(self, batch: Batch, step: int) -> _Parts:
+        found = self.scenes.parts(batch.to(self.group.device))
+        return [self._augmented(k, part, step) for k, _, part in found]
+
+    def _update(self, parts: _Parts, within: float) -> Loss:
         for group in self.optimiser.param_groups:
             group["lr"] = self._learning_rate(within)
         mixed = self.recipe.mixed_precision and self.group.device.type == "cuda"
-        parts = []
-        for k, _, part in self.scenes.parts(batch):
-            scene, prepared, part = self._augmented(k, part)
+        found = []
+        for scene, prepared, part in parts:
             with torch.autocast("cuda", torch.bfloat16) if mixed else contextlib.nullcontext():
                 prediction = self.model.decode(self.model.encode(scene, prepared), pokes_of(part))
-            parts.append((prediction, part, scene))
-        loss = loss_of(parts, self.recipe, self.statistics)
+            found.append((prediction, part, scene))
+        loss = loss_of(found, self.recipe, self.statistics)
         self.optimiser.zero_grad(set_to_none=True)
         loss.total.backward()
         self.group.average_gradients(self.model)
@@ -259,11 +287,11 @@ class Trainer:
         self._update_ema()
         return loss
 
-    def _augmented(self, k: int, batch: Batch) -> tuple[Scene, Any, Batch]:
+    def _augmented(self, k: int, batch: Batch, step: int) -> tuple[Scene, Any, Batch]:
         """Jitter and drop points of the frames of scene k at random; a function of seed and step alone."""
         scene, prepared, recipe = self.scenes.scenes[k], self.prepared[k], self.recipe
         device = batch.displacement.device
-        jitter = self._random(2)
+        jitter = self._random(2, step)
         if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
             setup = self.store.setups[k]
             points = jittered(setup, jitter)
@@ -274,7 +302,7 @@ class Trainer:
             )
             moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
             batch, prepared = replace(batch, displacement=moved.to(device)), None
-        dropout = self._random(1)
+        dropout = self._random(1, step)
         if dropout.uniform() < recipe.point_dropout:
             n = len(scene.points)
             some = np.sort(dropout.choice(n, int(n * dropout.uniform(_FEWEST, 1)), replace=False))
@@ -285,8 +313,8 @@ class Trainer:
             prepared = self.model.prepare(scene)
         return scene, prepared, batch
 
-    def _random(self, stream: int) -> np.random.Generator:
-        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(stream, self.step))
+    def _random(self, stream: int, step: int) -> np.random.Generator:
+        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(stream, step))
         return np.random.default_rng(key)
 
     def _learning_rate(self, within: float) -> float:

@@ -36,6 +36,7 @@ def test_latencies_of_a_run_on_a_part_of_a_dataset(tmp_path: Path) -> None:
     assert [name for name, threads, *_ in found if threads == "1"] == [
         "invariant-gnn-small, one at a time",
         "invariant-gnn-small, in real time with intervals",
+        "invariant-gnn-small, in real time with intervals, first of a contact",
         "invariant-gnn-small, as a batch of one",
         "invariant-gnn-small, 8 at once, each",
     ]

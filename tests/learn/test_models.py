@@ -173,6 +173,26 @@ def test_one_poke_at_a_time_gives_the_same(store: Store, sizes: Statistics, poke
         assert np.array_equal(one(*rod, float(pokes.modulus[k]))[0], u)
 
 
+@pytest.mark.parametrize("name", ["invariant-gnn", "invariant-gnn-small"])
+def test_what_a_contact_keeps_is_not_kept_for_another(
+    store: Store, sizes: Statistics, pokes: Pokes, name: str
+) -> None:
+    """Deeper from one contact, then another, and back: each answer is a new predictor's, bit by bit."""
+    model, scene = _model(name, sizes), scene_on(store.setup, store.profile)
+    assert isinstance(model, InvariantGnn)
+    with torch.no_grad():
+        encoded = model.encode(scene, model.prepare(scene))
+    one = SinglePoke(model, encoded)
+    contacts = [(pokes.start[k].numpy(), pokes.direction[k].numpy()) for k in (0, 1, 3)]
+    other = contacts[0][0] + np.array([3e-3, 0, 0])
+    course = [*contacts, contacts[0], (other, contacts[0][1]), (other, contacts[1][1])]
+    for contact, depth in ((contact, depth) for contact in course for depth in (1e-3, 4e-3, 2e-3)):
+        u, force = one(*contact, depth, 2e4)
+        again, same = SinglePoke(model, encoded)(*contact, depth, 2e4)
+        assert np.array_equal(u, again)
+        assert force == same
+
+
 def test_any_cloud_gives_nearly_the_same_field(store: Store, sizes: Statistics, pokes: Pokes) -> None:
     """A quarter of the points move nearly as among all points: messages are means, not sums."""
     model, scene = _model("invariant-gnn", sizes), scene_on(store.setup, store.profile)

@@ -304,6 +304,29 @@ def test_dropout_of_an_epoch_does_not_depend_on_where_the_run_was_resumed(
     assert drawn[0] == drawn[1] != drawn[2] == drawn[3]
 
 
+@pytest.mark.parametrize("data", ["memory", "stream"])
+def test_batches_prepared_in_advance_train_the_same(folder: Path, tmp_path: Path, data: str) -> None:
+    """As on a GPU, where another thread draws the dropped points of the next batches."""
+    recipe = Recipe.model_validate(
+        {
+            "name": "tiny",
+            "epochs": 2,
+            "batch": 2,
+            "model": "invariant-gnn-small",
+            "point_dropout": 0.6,
+            "data": data,
+        }
+    )
+    weights = []
+    for ahead in (0, 2):
+        trainer = Trainer(open_store(folder), recipe, tmp_path / f"run{ahead}")
+        assert trainer.ahead == 0
+        trainer.ahead = ahead
+        trainer.train()
+        weights.append(_weights(tmp_path / f"run{ahead}"))
+    assert _same(*weights)
+
+
 def test_best_weights_without_their_training_are_not_overwritten(folder: Path, tmp_path: Path) -> None:
     """A run is kept so for release. A stop within the first epoch leaves best.pt alone: it begins again."""
     store = open_store(folder)
