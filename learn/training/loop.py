@@ -5,13 +5,9 @@ from __future__ import annotations
 import contextlib
 import copy
 import functools
-import itertools
 import math
 import time
-from collections import deque
 from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +17,11 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
-from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns
 from learn.data.folds import contact_points, split_of
 from learn.errors import InputError
-from learn.models import MODELS, Scene, Scenes, make_model, pokes_of
+from learn.models import MODELS, Scenes, make_model, pokes_of
 from learn.progress import OnProgress, Progress, ignore
+from learn.training.augmentation import Augmentation, Parts
 from learn.training.optimisers import make_optimiser
 from learn.training.process_group import ProcessGroup
 from learn.training.recipe import Loss, Recipe, loss_of
@@ -43,10 +39,7 @@ from learn.validity import domain_of
 
 _DIVERGED = 10.0  # ratio to the lowest training loss of an epoch
 _WARM_FRAMES = 600  # for the warm start
-_FEWEST = 0.4  # least fraction of the points under point dropout
 _FLOOR = 0.01  # fraction of the learning rate at the end of a cosine
-
-_Parts = list[tuple[Scene, Any, Batch]]  # of a batch, by scene: scene, prepared quantities, frames
 
 
 class DivergedError(Exception):
@@ -94,11 +87,6 @@ class Trainer:
         kept = self._checkpoint(resume)
         self.train_data = self._dataset()
         self.validation = MemoryDataset(store, self.split.validation) if group.is_main else None
-        self.surfaces = (
-            SurfaceField(store, np.unique(store.frame_poke[self.split.train]).tolist())
-            if recipe.point_jitter
-            else None
-        )
         if kept is None:
             self.statistics = statistics(self._ordered(), store)
         else:
@@ -118,10 +106,13 @@ class Trainer:
             self._restore(kept)
         scenes = Scenes.of(store).to(group.device)
         self.domain = domain_of(store, self.split.train)
-        self.scenes = scenes.only(self._geometries(self.split.train))
+        train = scenes.only(self._geometries(self.split.train))
         self.scenes_validation = scenes.only(self._geometries(self.split.validation))
         # neighbourhoods depend on the points alone, which are the same in both
         self.prepared = [self.model.prepare(scene) for scene in scenes.scenes]
+        self.augmentation = Augmentation(
+            store, recipe, self.split.train, scenes=train, prepared=self.prepared, prepare=self.model.prepare
+        )
 
     def train(self) -> None:
         """Train to the recipe's last epoch.
@@ -235,7 +226,7 @@ class Trainer:
         torch.manual_seed(int(key.generate_state(1)[0]))
         done, total = 0, len(self.split.train)
         sums = torch.zeros(3, dtype=torch.float64)
-        for frames, parts in self._prepared():
+        for frames, parts in self.augmentation.each(self._batches(), self.step, ahead=self.ahead):
             loss = self._update(parts, done / total)
             values = torch.stack([loss.total, loss.displacement, loss.force]).detach().double().cpu()
             if not bool(torch.isfinite(values).all()):
@@ -246,28 +237,7 @@ class Trainer:
         means = [self.group.mean(float(v)) * self.group.world / max(done, 1) for v in sums]
         return dict(zip(("train_loss", "train_displacement_mm", "train_force"), means, strict=True))
 
-    def _prepared(self) -> Iterator[tuple[int, _Parts]]:
-        """Number of frames and augmented parts of each batch of an epoch, `ahead` batches in advance."""
-        steps = itertools.count(self.step)
-        if not self.ahead:
-            for batch in self._batches():
-                yield len(batch), self._parts(batch, next(steps))
-            return
-        waiting: deque[tuple[int, Future[_Parts]]] = deque()
-        with ThreadPoolExecutor(1) as worker:
-            for batch in self._batches():
-                waiting.append((len(batch), worker.submit(self._parts, batch, next(steps))))
-                if len(waiting) > self.ahead:
-                    frames, parts = waiting.popleft()
-                    yield frames, parts.result()
-            for frames, parts in waiting:
-                yield frames, parts.result()
-
-    def _parts(self, batch: Batch, step: int) -> _Parts:
-        found = self.scenes.parts(batch.to(self.group.device))
-        return [self._augmented(k, part, step) for k, _, part in found]
-
-    def _update(self, parts: _Parts, within: float) -> Loss:
+    def _update(self, parts: Parts, within: float) -> Loss:
         for group in self.optimiser.param_groups:
             group["lr"] = self._learning_rate(within)
         mixed = self.recipe.mixed_precision and self.group.device.type == "cuda"
@@ -286,36 +256,6 @@ class Trainer:
         self.step += 1
         self._update_ema()
         return loss
-
-    def _augmented(self, k: int, batch: Batch, step: int) -> tuple[Scene, Any, Batch]:
-        """Jitter and drop points of the frames of scene k at random; a function of seed and step alone."""
-        scene, prepared, recipe = self.scenes.scenes[k], self.prepared[k], self.recipe
-        device = batch.displacement.device
-        jitter = self._random(2, step)
-        if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
-            setup = self.store.setups[k]
-            points = jittered(setup, jitter)
-            scene = replace(
-                scene.at(nearest_columns(setup, points)),
-                points=torch.from_numpy(points).to(device),
-                area=torch.from_numpy(areas(points)).to(device),
-            )
-            moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
-            batch, prepared = replace(batch, displacement=moved.to(device)), None
-        dropout = self._random(1, step)
-        if dropout.uniform() < recipe.point_dropout:
-            n = len(scene.points)
-            some = np.sort(dropout.choice(n, int(n * dropout.uniform(_FEWEST, 1)), replace=False))
-            scene = scene.at(some)
-            index = torch.from_numpy(some).to(device)
-            batch, prepared = replace(batch, displacement=batch.displacement[:, index]), None
-        if scene is not self.scenes.scenes[k]:
-            prepared = self.model.prepare(scene)
-        return scene, prepared, batch
-
-    def _random(self, stream: int, step: int) -> np.random.Generator:
-        key = np.random.SeedSequence(entropy=self.recipe.seed, spawn_key=(stream, step))
-        return np.random.default_rng(key)
 
     def _learning_rate(self, within: float) -> float:
         """Rate at the fraction `within` of the current epoch: warm-up, then constant or a cosine."""

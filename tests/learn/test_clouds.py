@@ -66,19 +66,23 @@ def test_a_jittered_batch_has_the_displacement_of_its_own_points(store: Store, t
     recipe = Recipe(name="tiny", batch=4, point_jitter=1.0, point_dropout=0.0)
     trainer = Trainer(store, recipe, tmp_path / "run")
     batch = next(iter(trainer._batches()))
-    scene, _, moved = trainer._augmented(0, batch, 0)
+    augmentation = trainer.augmentation
+    [(scene, _, moved)] = augmentation(batch, 0)
     points = scene.points.numpy()
     assert np.abs(points - store.setup.points)[:, :2].max() > 1e-3
-    assert trainer.surfaces is not None
-    expected = trainer.surfaces.displacement(batch.frame.numpy(), points)
+    assert augmentation.surfaces is not None
+    expected = augmentation.surfaces.displacement(batch.frame.numpy(), points)
     np.testing.assert_array_equal(moved.displacement.numpy(), expected)
     columns = nearest_columns(store.setup, points)
-    np.testing.assert_array_equal(scene.rigid.numpy(), trainer.scenes.scenes[0].rigid[:, columns].numpy())
+    np.testing.assert_array_equal(
+        scene.rigid.numpy(), augmentation._scenes.scenes[0].rigid[:, columns].numpy()
+    )
     np.testing.assert_allclose(scene.area.numpy(), areas(points))
-    again, _, _ = trainer._augmented(0, batch, 0)
+    [(again, _, _)] = augmentation(batch, 0)
     np.testing.assert_array_equal(again.points.numpy(), points)  # depends on seed and step only
     plain = Trainer(store, recipe.model_copy(update={"point_jitter": 0.0}), tmp_path / "plain")
-    assert plain._augmented(0, batch, 0)[0] is plain.scenes.scenes[0]
+    [(same, _, _)] = plain.augmentation(batch, 0)
+    assert same is plain.augmentation._scenes.scenes[0]
 
 
 def test_the_recipe_for_few_pokes_trains_between_the_grid_points() -> None:
