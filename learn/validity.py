@@ -331,7 +331,8 @@ def interior_at(store: Store, poke: int) -> tuple[float, float]:
 
 def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
     """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
-    x, y = (setup.points[:, :2] - setup.contact_site(start, direction)).T
+    site = setup.contact_site(start, direction)
+    x, y = setup.points[:, 0] - site[0], setup.points[:, 1] - site[1]
     square = x * x + y * y
     near = square <= max(setup.rod_radius**2, float(square.min()))
     return float(interior.soft[near].min())

@@ -43,6 +43,8 @@ _DIGITS = 6.0  # standard deviations beyond which a column has no weight in sing
 class _Touch:
     """What depends on first contact and push alone, of n points; lengths in rod radii.
 
+    `entered` is memory of the predictor, so that only its last contact is valid.
+
     Attributes
     ----------
     r, unit : from first contact to the points, and divided by sqrt(|r|^2 + 1), each (3, n).
@@ -123,6 +125,7 @@ class SinglePoke:
             _channels(w.shape[1], n).fill_(1.0) for w in (self._fixed, self._moving)
         )
         hidden = len(self._fixed)
+        self._entered_fixed = _channels(hidden, n)
         self._entered = _channels(1 + hidden, n).fill_(1.0)  # row 0 is of ones, times which are the biases
         self._rings = (RINGS[:, None] * len(RINGS)).numpy()
         self._widths = np.array([[-0.5 * (self._radius / w) ** 2] for w in WIDTHS], dtype=np.float32)
@@ -221,9 +224,13 @@ class SinglePoke:
         t, o = g + len(_GAUSS), self._own
         rows[g : t - 3] = ring * np.float32(len(RINGS) / math.log1p(20.0)) - self._rings
         rows[t - 3 : t] = aside, aside / 2, np.square(aside / np.float32(1.5))
-        rows[g:t] = np.exp(np.float32(-0.5) * np.square(rows[g:t]))
+        gauss = rows[g:t]
+        gauss *= gauss
+        gauss *= np.float32(-0.5)
+        np.exp(gauss, out=gauss)
         under = rows[t - 1].copy()
-        rows[t:o] = np.tanh([2 - 2 * aside, over, 3 * over / aside])
+        rows[t:o] = 2 - 2 * aside, over, 3 * over / aside
+        np.tanh(rows[t:o], out=rows[t:o])
         rows[o - 1] *= under
         v = len(self._vectors[0])
         rows[o : o + 3] = unit
@@ -254,7 +261,7 @@ class SinglePoke:
             radial=radial,
             fixed=(self._prior_of_turn @ radial) * turn,
             soft=float(near[0] @ self._clear),
-            entered=torch.addmm(self._code, self._fixed, self._fixed_rows),
+            entered=torch.addmm(self._code, self._fixed, self._fixed_rows, out=self._entered_fixed),
             seen=np.concatenate([(near @ self._looked).reshape(-1), push @ toward, here @ toward]),
             cover=self._column / float(near[0] @ self._per_clear),
             blocked=blocked,
@@ -300,36 +307,46 @@ class _Path:
     def __init__(self, encoded: Encoded, inclusion: int) -> None:
         scene = encoded.scene
         self._normals = np.ascontiguousarray(scene.normals.numpy().T)
-        self._log_area = torch.log(scene.area).numpy()
-        self._layers = np.ascontiguousarray(encoded.layers[:, inclusion].numpy())
-        self._height = scene.height
+        self._roughly = self._normals.astype(np.float32)
+        self._area = scene.area.float().numpy()[:, None]
+        layers = encoded.layers[:, inclusion].numpy()
+        # of each layer of each column, in one row: rigid fraction, and what the next layer adds to it
+        self._layers = np.ascontiguousarray(layers[:, :-1]).reshape(-1)
+        self._more = np.ascontiguousarray(np.diff(layers, axis=1)).reshape(-1)
+        self._per_height = _ahead.LAYERS / scene.height
+        widths = np.array(_ahead.WIDTHS)[:, None, None]
+        self._exponents = (-0.5 / widths**2).astype(np.float32)
 
     def __call__(self, offset: Doubles, push: Doubles) -> Floats:
         """Fraction of the tissue about the axis that is rigid, (widths, samples); `offset` (3, n) [m]."""
-        way = _ahead.WAY
-        down, sink, along = (offset * self._normals).sum(axis=0), -(push @ self._normals), push @ offset
+        way, few = _ahead.WAY, self._near(offset.astype(np.float32), push.astype(np.float32))
+        offset, normals = offset[:, few], self._normals[:, few]
+        down, sink, along = ((offset * normals).sum(axis=0), -(push @ normals), push @ offset)
+        whole = (offset * offset).sum(axis=0)[:, None]
+        z = down[:, None] + sink[:, None] * way
+        square = whole + way * (way - 2 * along[:, None]) - z * z
+        place = np.minimum(np.maximum(z * self._per_height - 0.5, 0), _ahead.LAYERS)
+        low = np.minimum(place.astype(np.intp), _ahead.LAYERS - 1)
+        part = (place - low).astype(np.float32)
+        low += few[:, None] * _ahead.LAYERS
+        rigid = self._layers.take(low, mode="clip") + part * self._more.take(low, mode="clip")
+        apart = (square - square.min(axis=0)).astype(np.float32)
+        weight = np.exp(apart * self._exponents) * self._area[few]
+        found = (weight * rigid).sum(axis=1) / weight.sum(axis=1)
+        return np.asarray(np.maximum.accumulate(found, axis=1))
+
+    def _near(self, offset: Floats, push: Floats) -> NDArray[np.intp]:
+        """Columns near the axis; the others are too far from it for any digit of the means."""
+        first, last = np.float32(_ahead.WAY[0]), np.float32(_ahead.WAY[-1])
+        down, sink, along = (offset * self._roughly).sum(axis=0), -(push @ self._roughly), push @ offset
         whole = (offset * offset).sum(axis=0)
-        # columns that are too far from the axis for any digit of the means
-        nearest = np.clip((along + sink * down) / np.maximum(1 - sink * sink, 1e-12), way[0], way[-1])
+        nearest = (along + sink * down) / np.maximum(1 - sink * sink, np.float32(1e-6))
+        nearest = np.minimum(np.maximum(nearest, first), last)
         square, *ends = (
-            whole + at * (at - 2 * along) - (down + sink * at) ** 2 for at in (nearest, way[0], way[-1])
+            whole + at * (at - 2 * along) - np.square(down + sink * at) for at in (nearest, first, last)
         )
         limit = max(end.min() for end in ends) + (_DIGITS * _ahead.WIDTHS[-1]) ** 2
-        few = np.flatnonzero(square <= limit)
-        down, sink, along, whole = (v[few, None] for v in (down, sink, along, whole))
-        z = down + sink * way
-        square = whole + way * (way - 2 * along) - z * z
-        place = np.clip(z * (_ahead.LAYERS / self._height) - 0.5, 0, _ahead.LAYERS)
-        low = np.minimum(place.astype(np.int64), _ahead.LAYERS - 1)
-        part, layers = (place - low).astype(np.float32), self._layers[few]
-        rows = np.arange(len(few))[:, None]
-        rigid = layers[rows, low] * (1 - part) + layers[rows, low + 1] * part
-        found = np.empty((len(_ahead.WIDTHS), len(way)), dtype=np.float32)
-        for k, width in enumerate(_ahead.WIDTHS):
-            log = self._log_area[few, None] - square / (2 * width**2)
-            weight = np.exp((log - log.max(axis=0)).astype(np.float32))
-            found[k] = (weight * rigid).sum(axis=0) / weight.sum(axis=0)
-        return np.maximum.accumulate(found, axis=1)
+        return np.flatnonzero(square <= limit)
 
 
 def _column(*values: float) -> Floats:
