@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 import calibration
-from calibration.measurements.homogeneous import unstated_sd
+from calibration.measurements.homogeneous import grows, unstated_sd
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,9 @@ def freedom(points: int, *, curves: int = 1500) -> float:
     found = np.empty(curves)
     for k in range(curves):
         stress = clean + NOISE * random.standard_normal(points)
-        found[k] = np.median(unstated_sd(stretch, stress, stress)) / NOISE
+        found[k] = (
+            np.median(unstated_sd(stretch, stress, stress, relative=grows([(stretch, stress)]))) / NOISE
+        )
     far = np.quantile(found**-2.0, 0.99)
     tried = np.linspace(1.0, 200.0, 2000)
     return float(tried[np.argmin(np.abs(tried / chi2.ppf(0.01, tried) - far))])

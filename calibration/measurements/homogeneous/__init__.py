@@ -2,12 +2,19 @@
 
 from calibration.measurements.homogeneous._forward import predicted
 from calibration.measurements.homogeneous._record import protocol_window
-from calibration.measurements.homogeneous._scatter import SMALLEST_RELATIVE, relative_sd, slope, unstated_sd
+from calibration.measurements.homogeneous._scatter import (
+    SMALLEST_RELATIVE,
+    grows,
+    relative_sd,
+    slope,
+    unstated_sd,
+)
 from calibration.measurements.homogeneous.stress import MODES, nominal_stress, nominal_stresses, percent_error
 
 __all__ = [
     "MODES",
     "SMALLEST_RELATIVE",
+    "grows",
     "nominal_stress",
     "nominal_stresses",
     "percent_error",

@@ -21,7 +21,7 @@ from calibration.measurements.homogeneous._course import (
     largest_before,
     window_of,
 )
-from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE, slope, unstated_sd
+from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE, grows, slope, unstated_sd
 from calibration.measurements.homogeneous.kinematics import first_excess
 from calibration.parameters import ProtocolWindow
 
@@ -208,12 +208,13 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
     whole: dict[str, Any] = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
     kept = selects(trial.mode, whole["stretch"])
     used = np.repeat(kept, np.concatenate(counts).astype(int))
+    own_sd = _own_sd(trial, parts, raw_time if timed else trial.stretch, means, counts, samples, used)
     sd = np.concatenate(
         [
-            _sd_over_time(trial, b, holds, means[n], firsts[n] - b.points.start, counts[n], samples[n], used)
+            _sd_over_time(trial, b, holds, means[n], firsts[n] - b.points.start, samples[n], own)
             if timed
-            else _sd(trial, b, means[n]["stretch"], means[n]["stress"], counts[n], samples[n], used)
-            for n, b in enumerate(parts)
+            else _sd(trial, means[n]["stretch"], means[n]["stress"], samples[n], own)
+            for (n, b), own in zip(enumerate(parts), own_sd, strict=True)
         ]
     )
     if not (np.isfinite(sd) & (sd > np.finfo(float).tiny)).all():
@@ -263,26 +264,11 @@ def _loads_again(turn: Array) -> bool:
     return bool((~unloading[int(np.argmax(unloading)) :]).any())
 
 
-def _sd(
-    trial: CouponTrial,
-    b: Stroke,
-    stretch: Array,
-    stress: Array,
-    count: Array,
-    samples: Array,
-    used: NDArray[np.bool_],
-) -> Array:
-    """Standard deviation of the means in bins [Pa], including the stretch error.
+def _sd(trial: CouponTrial, stretch: Array, stress: Array, samples: Array, own: Array) -> Array:
+    """Standard deviation of the means in a branch's bins [Pa], including the stretch error.
 
-    An error estimated from the scatter is at least SMALLEST_RELATIVE of the record's largest stress, for any
-    number of averaged points.
-
-    Parameters
-    ----------
-    count, samples : of points, and of samples of the record, in each bin.
-    used : mask of the trial's points that are compared.
+    samples : number of samples of the record in each bin; own : error of the stress alone.
     """
-    own = _own_sd(trial, b, trial.stretch, stress, count, samples, used)
     if trial.stretch_sd == 0.0:
         return own
     return np.asarray(
@@ -296,13 +282,10 @@ def _sd_over_time(
     holds: Sequence[slice],
     mean: Mapping[str, Array],
     first: NDArray[np.intp],
-    count: Array,
     samples: Array,
-    used: NDArray[np.bool_],
+    own: Array,
 ) -> Array:
-    """As `_sd`, with the scatter about a smooth curve of time; a hold has the slope of the last ramp."""
-    assert trial.time is not None
-    own = _own_sd(trial, b, trial.time, mean["stress"], count, samples, used)
+    """As `_sd`; a hold has the slope of the last ramp."""
     if trial.stretch_sd == 0.0:
         return own
     rows = b.points.start + first
@@ -316,20 +299,32 @@ def _sd_over_time(
 
 def _own_sd(
     trial: CouponTrial,
-    b: Stroke,
+    parts: Sequence[Stroke],
     over: Array,
-    stress: Array,
-    count: Array,
-    samples: Array,
+    means: Sequence[Mapping[str, Array]],
+    counts: Sequence[Array],
+    samples: Sequence[Array],
     used: NDArray[np.bool_],
-) -> Array:
-    """Standard deviation of the stress alone [Pa]; over : abscissa of the trial, for the scatter about it."""
+) -> list[Array]:
+    """Standard deviation of the stress alone [Pa] of the means in each branch's bins.
+
+    An error estimated from the scatter is at least SMALLEST_RELATIVE of the record's largest stress, for any
+    number of averaged points. Whether it grows with the stress is a question to the whole record.
+
+    Parameters
+    ----------
+    over : abscissa of the trial, for the scatter about a smooth curve.
+    counts, samples : of points, and of samples of the record, in each bin.
+    used : mask of the trial's points that are compared.
+    """
     if trial.stress_sd is not None:
-        return np.asarray(trial.stress_sd / np.sqrt(samples))
-    mine = used[b.points]
-    return np.maximum(
-        unstated_sd(over[b.points][mine], trial.stress[b.points][mine], stress, count), _least_sd(trial)
-    )
+        return [np.asarray(trial.stress_sd / np.sqrt(n)) for n in samples]
+    curves = [(over[b.points][used[b.points]], trial.stress[b.points][used[b.points]]) for b in parts]
+    relative, least = grows(curves), _least_sd(trial)
+    return [
+        np.maximum(unstated_sd(*curve, mean["stress"], count, relative=relative), least)
+        for curve, mean, count in zip(curves, means, counts, strict=True)
+    ]
 
 
 def _least_sd(trial: CouponTrial) -> float:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import mannwhitneyu
 
 from calibration._numerics import robust_sd
 
@@ -18,27 +19,31 @@ FLOOR = 0.05
 # many points, and these would decide which cause is named.
 SMALLEST_RELATIVE = 0.005
 FEWEST = 8  # different abscissae from which a scatter about a smooth curve is found at all
-ENOUGH = 24  # least number of points to decide if the scatter grows with the stress:
-CLEARLY = 2.0  # its ratio between the half with larger stresses and the half with smaller ones
-CHANCE = 0.005
+# Least difference of two log-likelihoods by which the scatter grows with the stress. A constant scatter gives
+# it in fewer than 1 % of curves of 30 points, and in none of 1,000 of 120 points
+# (studies/diagnosis/unstated-noise.md): residuals of neighbours have points in common.
+CLEARLY = 4.0
 REACH = 10.0  # least half width of the window of the slope, in standard deviations of the stretch
 _WINDOW = 0.15  # fraction of the points in the window of the slope
 
 
-def unstated_sd(over: Array, measured: Array, values: Array, count: Array | float = 1.0) -> Array:
+def unstated_sd(
+    over: Array, measured: Array, values: Array, count: Array | float = 1.0, *, relative: bool
+) -> Array:
     """Standard deviation of means (k,) of a curve whose error the lab does not state.
 
-    The error is proportional to the value if the scatter grows with it (`grows`), and constant otherwise. It
-    is at least SMALLEST_RELATIVE of the largest value. The value is that of a smooth curve: with its own, a
-    point that is too low would count more, and draw the fit down by twice the square of the relative error.
+    It is at least SMALLEST_RELATIVE of the largest value.
 
     Parameters
     ----------
     over, measured : abscissa and values of the curve, shape (n,).
     values, count : means of its points, shape (k,), and number of points in each mean.
+    relative : True for an error in proportion to the value (`grows`), False for a constant one. The value is
+        that of a smooth curve: with its own, a point that is too low would count more, and draw the fit down
+        by twice the square of the relative error.
     """
     largest = max(float(np.abs(measured).max(initial=0.0)), float(np.finfo(float).tiny))
-    if grows(over, measured):
+    if relative:
         smooth, _ = _local_line(np.arange(len(values), dtype=float), values, 0.0)
         one = relative_sd(over, measured) * np.maximum(np.abs(smooth), FLOOR * largest)
     else:
@@ -47,18 +52,27 @@ def unstated_sd(over: Array, measured: Array, values: Array, count: Array | floa
     return np.asarray(np.maximum(one / np.sqrt(count), SMALLEST_RELATIVE * largest))
 
 
-def grows(over: Array, measured: Array) -> bool:
-    """True if the larger half of a curve's |values| scatters over CLEARLY times as much as the smaller.
+def grows(curves: Sequence[tuple[Array, Array]]) -> bool:
+    """True if the scatter of the curves of one record grows with the value.
 
-    And if chance makes that in fewer than CHANCE of curves with a constant scatter (Mann and Whitney 1947).
+    The absolute residuals r are compared as exponential variables of a mean in proportion to the absolute
+    value v (at least FLOOR of the largest) and of a constant mean, both of the greatest likelihood: the
+    logarithms of the likelihoods differ by n (ln <r> - ln <r / v> - <ln v>), where <> is the mean over the n
+    points of all curves. The difference is to be more than CLEARLY.
+
+    Parameters
+    ----------
+    curves : abscissa and values of each curve, shape (n,).
     """
-    left = _left(over, measured)
-    if left is None or len(left[0]) < ENOUGH:
+    found = [left for over, measured in curves if (left := _left(over, measured)) is not None]
+    if not found:
         return False
-    smaller, larger = np.array_split(left[0][np.argsort(np.abs(left[1]))], 2)
-    if not np.median(larger) > CLEARLY * np.median(smaller):
+    r = np.concatenate([left for left, _ in found])
+    v = _size(np.concatenate([inner for _, inner in found]), np.concatenate([y for _, y in curves]))
+    if not r.any():
         return False
-    return bool(mannwhitneyu(larger, smaller, alternative="greater").pvalue < CHANCE)
+    better = len(r) * (np.log(r.mean()) - np.log((r / v).mean()) - np.log(v).mean())
+    return bool(better > CLEARLY)
 
 
 def relative_sd(stretch: Array, stress: Array) -> float:
@@ -73,8 +87,13 @@ def relative_sd(stretch: Array, stress: Array) -> float:
     if found is None:
         return SMALLEST_RELATIVE
     left, inner = found
-    scale = np.maximum(np.abs(inner), FLOOR * float(np.abs(stress).max(initial=0.0)))
-    return max(float(robust_sd(left / np.maximum(scale, np.finfo(float).tiny))), SMALLEST_RELATIVE)
+    return max(float(robust_sd(left / _size(inner, stress))), SMALLEST_RELATIVE)
+
+
+def _size(values: Array, curve: Array) -> Array:
+    """Absolute values, at least FLOOR of the largest of their curve, and more than 0."""
+    least = max(FLOOR * float(np.abs(curve).max(initial=0.0)), float(np.finfo(float).tiny))
+    return np.asarray(np.maximum(np.abs(values), least))
 
 
 def _left(over: Array, measured: Array) -> tuple[Array, Array] | None:

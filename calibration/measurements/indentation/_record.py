@@ -13,7 +13,7 @@ from calibration.errors import InputError
 from calibration.experiment.model import PokeTrial, specimen_of
 from calibration.measurements._course import bins_over_time
 from calibration.measurements._records import bins
-from calibration.measurements.homogeneous import SMALLEST_RELATIVE, unstated_sd
+from calibration.measurements.homogeneous import SMALLEST_RELATIVE, grows, unstated_sd
 from calibration.measurements.indentation._course import Course, course_of, with_holds
 from calibration.measurements.indentation._phases import phases_of, smooth_depth
 from calibration.measurements.indentation._scene import (
@@ -275,7 +275,8 @@ def _own_sd(trial: PokeTrial, force: Array, count: Array) -> Array:
     """
     if trial.force_sd is not None:
         return np.asarray(trial.force_sd / np.sqrt(count))
-    return unstated_sd(trial.record.time, trial.record.force, force, count)
+    curve = (trial.record.time, trial.record.force)
+    return unstated_sd(*curve, force, count, relative=grows([curve]))
 
 
 def _scatter_points(trial: PokeTrial, own_sd: Array) -> int:
