@@ -80,7 +80,7 @@ class RealTime:
     """One interior of a predictor, made by `Predictor.real_time`.
 
     What depends on the contact alone (`site` and `direction`) is kept for the next poke: the first answer of
-    a contact takes longer than those at other depths.
+    a contact takes longer than those at other depths. One thread may call it at a time.
 
     Parameters
     ----------
