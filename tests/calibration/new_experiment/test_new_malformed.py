@@ -493,6 +493,11 @@ def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
         ("- 1\n", "expected keys and values at the top level"),
         ("name: x\nname: y\n", "line 2: key name stands there twice"),
         ("name: [x\n", "line 2: expected valid YAML"),
+        # the list of trials is not said to be wrong beside its one wrong trial
+        (
+            "name: x\ntrials:\n- {id: a, kind: coupon, file: f, mode: pull}\n",
+            "'planar' or 'simple-shear', got 'pull'\n",
+        ),
         (
             "name: x\ntrials:\n- {id: a, kind: coupon, file: f}\n- {id: a, kind: coupon, file: f}\n",
             "expected different ids, trial #2 has the id a again",
