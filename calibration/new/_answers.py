@@ -138,6 +138,12 @@ class CaptureAnswers(Strict):
     photo_checkerboard: CheckerboardEntry | None = None
 
     @model_validator(mode="after")
+    def _seen(self) -> CaptureAnswers:
+        if self.outline is None and self.photo is None:
+            raise say("outline", "missing, expected an outline or a photo")
+        return self
+
+    @model_validator(mode="after")
     def _shared_by_outlines(self) -> CaptureAnswers:
         if self.registration_shared_sd is not None and self.outline is None:
             raise say("registration_shared_sd", "expected an outline beside it")

@@ -120,7 +120,7 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
             read(folder)
             read_photo_settings(folder)
         except InputError as error:
-            raise InputError(str(error).replace(str(folder), str(out))) from None
+            raise InputError(_at_source(str(error), folder, work)) from None
         out.parent.mkdir(parents=True, exist_ok=True)
         if out.exists():
             out.rmdir()
@@ -193,6 +193,13 @@ def _move_paths(node: Any, base: Path, names: dict[Path, str]) -> None:
                 node[key] = names.get(base / value, value)
             else:
                 _move_paths(value, base, names)
+
+
+def _at_source(text: str, folder: Path, work: Work) -> str:
+    """A sentence on the files of a folder that is not kept, on those that the lab has in their place."""
+    for name in sorted(work.copies, key=len, reverse=True):  # one name may begin another
+        text = text.replace(str(folder / name), str(work.copies[name]))
+    return text.replace(str(folder / "experiment.yaml"), work.asker.place)
 
 
 def _file(folder: Path, name: str) -> Path:

@@ -361,7 +361,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "push",
         same,
         {"start_mm": [40.0, 0.0, 20.0]},
-        "lab/experiment.yaml: key trials[push].start_mm:",
+        "answers.yaml: key trials[push].start_mm:",
         "above the block's base",
     ),
     "unknown check": (
