@@ -85,8 +85,14 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
         name: m.model_dump(exclude_none=True, exclude_unset=True) for name, m in answers.materials.items()
     }
     trials = [_trial(work, entry, materials) for entry in answers.trials]
-    for trial in trials:
-        materials.setdefault(trial["material"], {})
+    used = dict.fromkeys(trial["material"] for trial in trials)
+    for name in answers.materials:
+        if name not in used:  # misspelt, as a rule, and what is known of it would be lost
+            raise InputError(
+                f"{asker.place}: key materials.{name}: expected a material of a trial ({', '.join(used)})"
+            )
+    for name in used:
+        materials.setdefault(name, {})
     photographed = any("photo" in c for trial in trials for c in trial.get("captures", ()))
     settings = photo_settings(work, answers.photographs) if photographed else {}
     board = None if answers.board is None else board_pdf(answers.board)

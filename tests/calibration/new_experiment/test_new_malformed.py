@@ -477,6 +477,15 @@ def test_malformed_imports_are_refused(case: str, tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == before
 
 
+def test_a_material_that_no_trial_has_is_refused(tmp_path: Path) -> None:
+    """A name that was misspelt left the trial's material without the density that stood under it."""
+    path = lab(tmp_path, "strip", same, {"material": "gell"})
+    done = CliRunner().invoke(app, ["--yes", str(path), "--out", str(tmp_path / "lab")])
+    assert done.exit_code == 2
+    assert done.stderr == f"error: {path}: key materials.gel: expected a material of a trial (gell)\n"
+    assert not (tmp_path / "lab").exists()
+
+
 def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
     """A modulus of 75 MPa is accepted if the answers name the check."""
     trial, change, _, _, _ = CASES["MPa for kPa"]
