@@ -203,6 +203,13 @@ class Answers(Strict):
         different_ids(self.trials)
         return self
 
+    @model_validator(mode="after")
+    def _of_photographs(self) -> Answers:
+        beams = [t for t in self.trials if isinstance(t, BeamAnswers)]
+        if self.photographs is not None and not any(c.photo for t in beams for c in t.captures or ()):
+            raise say("photographs", "expected none without a capture that has a photo")
+        return self
+
 
 def read_answers(path: Path) -> Answers:
     """An answers file.

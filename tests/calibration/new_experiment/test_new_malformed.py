@@ -502,6 +502,10 @@ def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
         ("- 1\n", "expected keys and values at the top level"),
         ("name: x\nname: y\n", "line 2: key name stands there twice"),
         ("name: [x\n", "line 2: expected valid YAML"),
+        (
+            "name: x\nphotographs: {board_distance_mm: 12.0}\ntrials:\n- {id: a, kind: coupon, file: f}\n",
+            "key photographs: expected none without a capture that has a photo",
+        ),
         # the list of trials is not said to be wrong beside its one wrong trial
         (
             "name: x\ntrials:\n- {id: a, kind: coupon, file: f, mode: pull}\n",
