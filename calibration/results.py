@@ -186,7 +186,7 @@ class DiagnosisResult:
         ]
 
     def __repr__(self) -> str:
-        lines = [self.sentence, *("  " + ", ".join(row) for row in self._rows())]
+        lines = [self.sentence, *("  " + ", ".join(row) for row in self._rows()), *self.diagnosis.implausible]
         if self.diagnosis.next_experiment:
             lines.append(f"Next: {self.diagnosis.next_experiment}.")
         return "\n".join(lines)
@@ -197,6 +197,7 @@ class DiagnosisResult:
         return (
             f"<p><strong>{escape(self.sentence)}</strong></p>"
             + table
+            + "".join(f"<p>{escape(said)}</p>" for said in self.diagnosis.implausible)
             + (f"<p>Next: {escape(following)}.</p>" if following else "")
         )
 

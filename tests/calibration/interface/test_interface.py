@@ -202,6 +202,7 @@ def test_a_single_name_is_one_name(folder: Path) -> None:
 def test_a_diagnosis_prints_itself(folder: Path) -> None:
     class Stub:
         next_experiment = "pull it <slowly>"
+        implausible = ("gel: a shear modulus <of glass>",)
 
         def sentence(self) -> str:
             return "Found: the material <creeps> (creep)."
@@ -214,6 +215,8 @@ def test_a_diagnosis_prints_itself(folder: Path) -> None:
     assert "creep, all, ratio, 0.25 ± 0.01" in repr(result)
     assert "&lt;creeps&gt;" in result._repr_html_()
     assert "&lt;slowly&gt;" in result._repr_html_()
+    assert "gel: a shear modulus <of glass>" in repr(result).splitlines()
+    assert "<p>gel: a shear modulus &lt;of glass&gt;</p>" in result._repr_html_()
 
 
 @pytest.mark.parametrize(
