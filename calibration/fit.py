@@ -201,15 +201,8 @@ def _write(plan: FitPlan, found: Fits, console: Console, cards: Path | None) -> 
         names = ", ".join(f"{r.material} {r.label}" for r in earlier)
         console.print(f"fitted by an earlier run: {escape(names)}", highlight=False, soft_wrap=True)
     folder = cards or plan.folder / "cards"
-    written = every.write_cards(folder)
-    for path in written:
+    for path in every.write_cards(folder):
         console.print(f"card: {escape(str(path))}", highlight=False, soft_wrap=True)
-    for name in every.materials:
-        path = folder / f"{name}.yaml"
-        if path not in written:
-            left = f"; {path} is an earlier run's" if path.exists() else ""
-            text = f"{name}: no card, since no law has a finished fit{left}"
-            console.print(escape(text), highlight=False, soft_wrap=True)
     report = every.write_report(plan.folder)
     console.print(f"report: {escape(str(report))}", highlight=False, soft_wrap=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -71,7 +72,7 @@ def main(
     left = f", {len(found.problems)} left out" if found.problems else ""
     console.print(
         f"{found.folder}: {len(found.figures)} captures{left}, pictures in {found.folder / 'pictures'}; next:"
-        f" python -m calibration.fit {found.folder}",
+        f" python -m calibration.fit {shlex.quote(str(found.folder))}",
         markup=False,
     )
 

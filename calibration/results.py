@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
+from calibration.progress import log
 from calibration.study.calibration import Calibration
 from calibration.study.cards import best, usable, write_card
 
@@ -82,12 +83,20 @@ class Fits(Sequence[Calibration]):
         return tuple(headline(self.of(m), self.experiment) for m in self.materials)
 
     def write_cards(self, folder: str | Path) -> list[Path]:
-        """Write folder/MATERIAL.yaml for each material that has a finished fit; their paths."""
-        return [
-            write_card(Path(folder), self.of(m), self.experiment)
-            for m in self.materials
-            if any(usable(r) for r in self.of(m))
-        ]
+        """Write folder/MATERIAL.yaml for each material that has a finished fit; their paths.
+
+        A material without one gets no card, and a warning in the log "calibration" says so: a card that an
+        earlier run left in the folder stays there, and would be taken for this one's.
+        """
+        written = []
+        for name in self.materials:
+            own, path = self.of(name), Path(folder) / f"{name}.yaml"
+            if any(usable(r) for r in own):
+                written.append(write_card(Path(folder), own, self.experiment))
+            else:
+                left = f"; {path} is an earlier run's" if path.exists() else ""
+                log.warning("%s: no card, since no law has a finished fit%s", name, left)
+        return written
 
     def write_report(self, folder: str | Path) -> Path:
         """Write folder/report.html and its pictures; the path of the page."""
@@ -177,7 +186,7 @@ class DiagnosisResult:
         ]
 
     def __repr__(self) -> str:
-        lines = [self.sentence, *("  " + ", ".join(row) for row in self._rows())]
+        lines = [self.sentence, *("  " + ", ".join(row) for row in self._rows()), *self.diagnosis.implausible]
         if self.diagnosis.next_experiment:
             lines.append(f"Next: {self.diagnosis.next_experiment}.")
         return "\n".join(lines)
@@ -188,6 +197,7 @@ class DiagnosisResult:
         return (
             f"<p><strong>{escape(self.sentence)}</strong></p>"
             + table
+            + "".join(f"<p>{escape(said)}</p>" for said in self.diagnosis.implausible)
             + (f"<p>Next: {escape(following)}.</p>" if following else "")
         )
 

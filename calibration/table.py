@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from calibration.cli import FitScreen, Laws, Measured, Version, Workers, command, plain_ends
+from calibration.cli import FitScreen, Laws, Measured, Version, Workers, check_folder, command, plain_ends
 from calibration.errors import InputError
 
 if TYPE_CHECKING:
@@ -78,6 +78,8 @@ def main(
         data = OnSetup.of(data, setup)
         home = fits or Path("calibrations") / experiment.resolve().name
         folder = fits_folder(home) if fits else home / "fits"
+        target = out or home
+        check_folder(target, "table", overwrite=True)  # fits may take hours
         found = {(law, m): read_fit(folder, data, m, law) for law in names for m in materials}
         bodies = {m: measured(data, m) for m in materials}
         if run_missing:
@@ -88,7 +90,6 @@ def main(
                 list(found.items()), description="bodies", console=console, transient=True
             )
         ]
-        target = out or home
         target.mkdir(parents=True, exist_ok=True)
         said = _command(experiment, fits, model, rig, out, run_missing)
         _write(rows, target, console, command=said, data=data)

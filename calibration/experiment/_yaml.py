@@ -98,7 +98,8 @@ def key_path(parts: Sequence[str | int], data: object) -> str:
 
 def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
     # an unknown key comes first: it explains the key that is missing in its place
-    problems = sorted(error.errors(include_url=False), key=lambda e: e["type"] != "unknown_key")
+    every = [e for e in error.errors(include_url=False) if not _follows(e)]
+    problems = sorted(every, key=lambda e: e["type"] != "unknown_key")
     first = problems[0]
     context: dict[str, Any] = first.get("ctx", {})
     own = [int(p) if p.isdigit() else p for p in str(context["key"]).split(".")] if "key" in context else []
@@ -121,6 +122,11 @@ def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
     where = key_path(parts, data) or "top level"
     what = "unknown key" if kind == "unknown_key" else "missing key" if kind == "missing" else "key"
     return f"{what} {where}: {reason}{got}{context.get('also', '')}{_others(problems[1:], data)}"
+
+
+def _follows(problem: Any) -> bool:
+    """True for entries that are said to be too few since pydantic counts those that are right alone."""
+    return problem["type"] == "too_short" and len(problem["input"]) >= problem["ctx"]["min_length"]
 
 
 def _others(problems: Sequence[Any], data: dict[Any, Any]) -> str:

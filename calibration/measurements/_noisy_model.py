@@ -137,51 +137,65 @@ class NoisyModel(ForwardModel):
             layers = layers_of(self._curves(shown))
             repeats = layers.repeats
             if repeats:
-                points = self._rescale(shown, points)
-            self.take_scatter(layers)
+                self._rescale(shown)
+                points = tuple(replace(p, assumed=p.assumed * shown.get(p.record, 1.0)) for p in points)
+            self._take_scatter(layers)
         known = NoiseKnown(
             known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
         )
         if source == "stated":
             return known
         factors = {p.record: p.factor for p in points if p.contradicts}
-        self._rescale(factors, points)
+        self._rescale(factors)
         self.from_data = {p.record: p.points for p in points if p.contradicts}
         dof = float(np.median([p.points for p in points])) / POINTS_PER_FREEDOM if factors else known.dof
         return replace(known, source="data", dof=dof)
 
+    def take_noise(self, known: NoiseKnown, *, predicted: bool = False) -> None:
+        """Take the noise of repeats that `settle_noise` has found in a model of some of these records.
+
+        What they show together is the noise of all records of their tests. Their own deviation is estimated
+        with the fit of a record; a predicted record is off by it.
+        """
+        if known.layers.repeats:
+            self._rescale(self._shown_together(known.points))
+        self._take_scatter(known.layers, predicted=predicted)
+
     def _shown_together(self, points: Sequence[PointNoise]) -> dict[str, float]:
         """Factors on the standard deviation of records whose noise is not stated, by name: one noise a test.
+
+        `points` may be of some records of a test only, and hold for all of them.
 
         An assumed noise exceeds what scatters from point to point, for errors that all points of a record
         share: with repeats, these are the scatter between them. One in proportion to the largest value of its
         record would give records that read too high a smaller weight.
         """
         by_name = {p.record: p for p in points if not p.stated}
-        groups: dict[Hashable, list[PointNoise]] = {}
+        tests: dict[Hashable, list[int]] = {}
         for k, r in enumerate(self.records):
             test = self.repeat_of(k)
-            if test is not None and str(r.name) in by_name:
-                groups.setdefault((r.material, test), []).append(by_name[str(r.name)])
+            if test is not None and not self.states_noise(k):
+                tests.setdefault((r.material, test), []).append(k)
         factors: dict[str, float] = {}
-        for group in groups.values():
+        for own in tests.values():
+            group = [by_name[name] for k in own if (name := str(self.records[k].name)) in by_name]
+            if not group:
+                continue
             shown = np.sqrt(np.average([p.shown**2 for p in group], weights=[p.points for p in group]))
             sd = min(float(shown), float(np.median([p.assumed for p in group])))
-            factors |= {p.record: sd / p.assumed for p in group}
+            for k in own:
+                mine = self.noise.sd[(self.row_record == k) & np.isfinite(self.noise.sd)]
+                if mine.size:
+                    factors[str(self.records[k].name)] = sd / float(np.median(mine))
         return factors
 
-    def _rescale(self, factors: Mapping[str, float], points: Sequence[PointNoise]) -> tuple[PointNoise, ...]:
-        """Multiply the standard deviation of records by a factor; the points with what is assumed then."""
+    def _rescale(self, factors: Mapping[str, float]) -> None:
+        """Multiply the standard deviation of records by a factor, by name."""
         by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
         self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
-        return tuple(replace(p, assumed=p.assumed * factors.get(p.record, 1.0)) for p in points)
 
-    def take_scatter(self, layers: Layers, *, predicted: bool = False) -> None:
-        """Add the scatter between repeats to `noise`: as nuisances, or to the standard deviation.
-
-        The own deviation of a record that is fitted is estimated with the fit; a predicted record is off by
-        it.
-        """
+    def _take_scatter(self, layers: Layers, *, predicted: bool = False) -> None:
+        """Add the scatter between repeats to `noise`: as nuisances, or to the standard deviation."""
         if not layers.repeat:
             return
         columns = []

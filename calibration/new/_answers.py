@@ -138,6 +138,12 @@ class CaptureAnswers(Strict):
     photo_checkerboard: CheckerboardEntry | None = None
 
     @model_validator(mode="after")
+    def _seen(self) -> CaptureAnswers:
+        if self.outline is None and self.photo is None:
+            raise say("outline", "missing, expected an outline or a photo")
+        return self
+
+    @model_validator(mode="after")
     def _shared_by_outlines(self) -> CaptureAnswers:
         if self.registration_shared_sd is not None and self.outline is None:
             raise say("registration_shared_sd", "expected an outline beside it")
@@ -195,6 +201,13 @@ class Answers(Strict):
     @model_validator(mode="after")
     def _ids(self) -> Answers:
         different_ids(self.trials)
+        return self
+
+    @model_validator(mode="after")
+    def _of_photographs(self) -> Answers:
+        beams = [t for t in self.trials if isinstance(t, BeamAnswers)]
+        if self.photographs is not None and not any(c.photo for t in beams for c in t.captures or ()):
+            raise say("photographs", "expected none without a capture that has a photo")
         return self
 
 

@@ -52,6 +52,11 @@ class Question:
 class Asker(Protocol):
     """Somebody to ask."""
 
+    @property
+    def place(self) -> str:
+        """Where the answers stand, for messages."""
+        ...
+
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
         """The answer, and whether it is the default."""
         ...
@@ -66,6 +71,10 @@ class Nobody:
     """An answers file that has to say everything that has no default."""
 
     path: Path
+
+    @property
+    def place(self) -> str:
+        return str(self.path)
 
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
         if question.default is None:
@@ -82,6 +91,10 @@ class Terminal:
 
     raw: dict[str, Any]
     explained: set[str] = field(default_factory=set)
+
+    @property
+    def place(self) -> str:
+        return "answers"
 
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
         if question.help and question.help not in self.explained:

@@ -5,6 +5,8 @@ How it is used: docs/how-to/photograph.md. Around the squares stays white paper 
 
 from __future__ import annotations
 
+import math
+
 from calibration.errors import InputError
 from calibration.new._answers import BoardAnswers
 
@@ -12,6 +14,7 @@ _POINTS = 72.0 / 25.4  # of a millimetre
 _PAGES = {"a4": (297.0, 210.0), "a3": (420.0, 297.0), "letter": (279.4, 215.9)}  # mm, lying
 _EDGE = 8.0  # mm that printers leave white
 _RULER = 100.0  # mm
+_BELOW, _LEAST_BELOW = 16.0, 5.0  # mm, of the ruler and its text, and of the paper between it and the squares
 
 
 def board_pdf(board: BoardAnswers) -> bytes:
@@ -26,14 +29,15 @@ def board_pdf(board: BoardAnswers) -> bytes:
     side = board.square_mm
     page = _PAGES[board.page]
     width, height = columns * side, rows * side
-    below = max(side, 5.0) + 16.0  # the ruler and its text
-    room = (page[0] - 2 * (_EDGE + side), page[1] - 2 * _EDGE - side - below)
-    if width > room[0] or height > room[1]:
+    largest = _largest(columns, rows, page)
+    if side > largest:
         raise InputError(
             f"board.square_mm: a board of {columns} x {rows} squares of {side:g} mm does not fit on"
-            f" {board.page}: expected at most {min(room[0] / columns, room[1] / rows):.3g} mm"
+            f" {board.page}: expected at most {math.floor(10 * largest) / 10:g} mm"
         )
-    left, bottom = 0.5 * (page[0] - width), _EDGE + below + 0.5 * (room[1] - height)
+    below = max(side, _LEAST_BELOW) + _BELOW
+    room = page[1] - 2 * _EDGE - side - below
+    left, bottom = 0.5 * (page[0] - width), _EDGE + below + 0.5 * (room - height)
     parts = ["0 g"]
     for column in range(columns):
         for row in range(rows):
@@ -49,6 +53,15 @@ def board_pdf(board: BoardAnswers) -> bytes:
     )
     parts.append(f"BT /F1 9 Tf {2 * _EDGE * _POINTS:.3f} {_EDGE * _POINTS:.3f} Td ({text}) Tj ET")
     return _document("\n".join(parts), page)
+
+
+def _largest(columns: int, rows: int, page: tuple[float, float]) -> float:
+    """Side of the largest squares [mm]: white paper of one square is beside them, above, and below."""
+    across, up = page[0] - 2 * _EDGE, page[1] - 2 * _EDGE - _BELOW
+    side = up / (rows + 2)
+    if side < _LEAST_BELOW:
+        side = (up - _LEAST_BELOW) / (rows + 1)
+    return min(side, across / (columns + 2))
 
 
 def _box(x: float, y: float, width: float, height: float) -> str:

@@ -85,8 +85,14 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
         name: m.model_dump(exclude_none=True, exclude_unset=True) for name, m in answers.materials.items()
     }
     trials = [_trial(work, entry, materials) for entry in answers.trials]
-    for trial in trials:
-        materials.setdefault(trial["material"], {})
+    used = dict.fromkeys(trial["material"] for trial in trials)
+    for name in answers.materials:
+        if name not in used:  # misspelt, as a rule, and what is known of it would be lost
+            raise InputError(
+                f"{asker.place}: key materials.{name}: expected a material of a trial ({', '.join(used)})"
+            )
+    for name in used:
+        materials.setdefault(name, {})
     photographed = any("photo" in c for trial in trials for c in trial.get("captures", ()))
     settings = photo_settings(work, answers.photographs) if photographed else {}
     board = None if answers.board is None else board_pdf(answers.board)
@@ -120,7 +126,7 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
             read(folder)
             read_photo_settings(folder)
         except InputError as error:
-            raise InputError(str(error).replace(str(folder), str(out))) from None
+            raise InputError(_at_source(str(error), folder, work)) from None
         out.parent.mkdir(parents=True, exist_ok=True)
         if out.exists():
             out.rmdir()
@@ -193,6 +199,13 @@ def _move_paths(node: Any, base: Path, names: dict[Path, str]) -> None:
                 node[key] = names.get(base / value, value)
             else:
                 _move_paths(value, base, names)
+
+
+def _at_source(text: str, folder: Path, work: Work) -> str:
+    """A sentence on the files of a folder that is not kept, on those that the lab has in their place."""
+    for name in sorted(work.copies, key=len, reverse=True):  # one name may begin another
+        text = text.replace(str(folder / name), str(work.copies[name]))
+    return text.replace(str(folder / "experiment.yaml"), work.asker.place)
 
 
 def _file(folder: Path, name: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -134,4 +135,6 @@ def _build(files: list[Path], out: Path, yes: Path | None) -> None:
     counts = ", ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in made.experiment.counts.items())
     photos = any(c.photo is not None for t in made.experiment.trials for c in getattr(t, "captures", ()))
     after = "reconstruct" if photos else "fit"
-    typer.echo(f"{made.folder}: {counts}; next: python -m calibration.{after} {made.folder}")
+    typer.echo(
+        f"{made.folder}: {counts}; next: python -m calibration.{after} {shlex.quote(str(made.folder))}"
+    )

@@ -31,6 +31,7 @@ from calibration.parameters._parts import (
     part_kinds,
     register_part,
 )
+from calibration.parameters._plausible import implausible
 from calibration.parameters._stated import OPTIONS, held_part, long_time_parts, part_entry
 from tisim import laws
 
@@ -109,6 +110,7 @@ __all__ = [
     "added_coordinates",
     "bulk_ratio",
     "held_part",
+    "implausible",
     "is_added_part",
     "is_series",
     "long_time_parts",

@@ -15,13 +15,13 @@ from calibration.experiment import PhotoSettings
 from calibration.experiment.model import BeamTrial, Capture, Registration, TracedOutline
 from calibration.photo._board import Board
 from calibration.photo._camera import Camera
-from calibration.photo._files import centreline_csv, outline_csv, png, stl
+from calibration.photo._files import centreline_csv, outline_csv, outline_name, png, stl
 from calibration.photo._image import Grey, read_photograph
 from calibration.photo._picture import strip
 from calibration.photo._trace import Specimen, trace
 from calibration.shape import centreline, sweep
 
-VERSION = 2  # raised when the same photograph would be traced differently
+VERSION = 3  # raised when the same photograph would be traced differently
 LEDGER = ".reconstruct"
 
 
@@ -49,10 +49,11 @@ def digest(job: Job, board: Board | None, camera: Camera | None, settings: Photo
     if capture.outline is not None:
         for array in (capture.outline.upper, capture.outline.lower):
             total.update(np.ascontiguousarray(array).tobytes())
-        total.update(repr((capture.outline.sd, capture.outline.correlation)).encode())
+        given = capture.outline
+        total.update(repr((given.sd, given.correlation, given.registration, given.shared)).encode())
     if capture.photo is not None and not job.traced:
         total.update(hashlib.sha256(capture.photo.read_bytes()).digest())
-        total.update(repr((capture.checkerboard, capture.registration)).encode())
+        total.update(repr((capture.photo.name, capture.checkerboard, capture.registration)).encode())
         assert board is not None
         total.update(np.ascontiguousarray(board.corners).tobytes())
     return total.hexdigest()
@@ -92,7 +93,7 @@ def run(
         image = read_photograph(capture.photo)
         found = trace(image, board, camera, specimen_of(trial), settings)
         outline = _with_registration(found.outline, capture.registration)
-        files[f"outlines/{job.name}.csv"] = outline_csv(outline)
+        files[outline_name(job.name)] = outline_csv(outline)
         figures |= {
             "photo": capture.photo.name,
             "photo_sha256": hashlib.sha256(capture.photo.read_bytes()).hexdigest(),

@@ -18,6 +18,11 @@ from calibration.experiment.model import TracedOutline
 from calibration.shape import Centreline
 
 
+def outline_name(job: str) -> str:
+    """Place of an outline that is traced, in the folder that is written."""
+    return f"outlines/{job}.csv"
+
+
 def outline_csv(outline: TracedOutline) -> bytes:
     """FORMAT.md's table: side, x_mm, z_mm."""
     lines = ["side,x_mm,z_mm"]
@@ -64,7 +69,7 @@ def write_copy(
     and a beam that has nothing else with it. Raises InputError where nothing would be left.
     """
     raw = load((folder / "experiment.yaml").read_bytes(), folder / "experiment.yaml")
-    theirs = _named(raw)  # and no old file of the folder that has the name of an outline traced now
+    theirs = named_files(raw)  # and no old file of the folder that has the name of an outline traced now
     dropped, trials = 0, []
     for trial in raw["trials"]:
         captures = trial.get("captures")
@@ -86,7 +91,7 @@ def write_copy(
     if any("photo" in entry for entry in figures.values()):
         origin = f"outlines traced from the photographs of {folder.name}"
         raw["notes"] = f"{raw['notes']}; {origin}" if raw.get("notes") else origin
-    for name in sorted(_named(raw) & theirs):
+    for name in sorted(named_files(raw) & theirs):
         source, target = folder / name, out / name
         if not target.resolve().is_relative_to(out.resolve()):
             raise InputError(f"{folder / 'experiment.yaml'}: {name} leads out of the folder")
@@ -103,7 +108,7 @@ def _entry(capture: dict[str, Any], figures: dict[str, Any] | None, name: str) -
         return entry
     if figures is None:
         return None
-    entry["outline"] = f"outlines/{name}.csv"
+    entry["outline"] = outline_name(name)
     entry["outline_sd_mm"] = round(figures["outline_sd_mm"], 5)
     entry["outline_correlation_mm"] = round(figures["outline_correlation_mm"], 3)
     for key in ("registration_sd", "registration_shared_sd"):
@@ -112,11 +117,11 @@ def _entry(capture: dict[str, Any], figures: dict[str, Any] | None, name: str) -
     return entry
 
 
-def _named(node: Any) -> set[str]:
+def named_files(node: Any) -> set[str]:
     """Files named anywhere in the experiment."""
     if isinstance(node, dict):
         own = {value for key, value in node.items() if key in _FILE_KEYS and isinstance(value, str)}
-        return own.union(*(_named(value) for value in node.values())) if node else own
+        return own.union(*(named_files(value) for value in node.values())) if node else own
     if isinstance(node, list):
-        return set().union(*(_named(value) for value in node)) if node else set()
+        return set().union(*(named_files(value) for value in node)) if node else set()
     return set()

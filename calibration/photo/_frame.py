@@ -135,11 +135,17 @@ MEASURED = 0.003  # relative sd of the diameter: specimens thin as they stretch,
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """focal length [px] and y distance of the board [m] after the update; sd of the scale that is left."""
+    """focal length [px] and y distance of the board [m] after the update; sd of the scale that is left.
+
+    off, off_sd : the known diameter less the one that the photograph shows by what was known before, and the
+    standard deviation of that difference [m].
+    """
 
     focal: float
     distance: float
     sd: float
+    off: float
+    off_sd: float
 
 
 def settle(
@@ -165,10 +171,17 @@ def settle(
         here = seen(p)
         slope = np.array([(seen(p + step) - here) / step.sum() for step in np.diag(_STEPS)])
         gain = spread @ slope / (slope @ spread @ slope + noise)
-        move = prior + gain * (diameter - here - slope @ (prior - p)) - p
+        off = diameter - here - slope @ (prior - p)
+        move = prior + gain * off - p
         p = p + np.clip(move, [-0.5, -0.5 * distance], [0.5, 0.5 * distance])
         if np.abs(move / _STEPS).max() < 0.05:
             break
     left = spread - np.outer(gain, slope @ spread)
     variance = float(slope @ left @ slope) / diameter**2
-    return Scale(focal=float(np.exp(p[0])), distance=float(p[1]), sd=float(np.sqrt(max(variance, 0.0))))
+    return Scale(
+        focal=float(np.exp(p[0])),
+        distance=float(p[1]),
+        sd=float(np.sqrt(max(variance, 0.0))),
+        off=float(off),
+        off_sd=float(np.sqrt(slope @ spread @ slope + noise)),
+    )

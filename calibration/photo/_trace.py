@@ -124,6 +124,7 @@ def _thin(line: Array) -> Array:
 _CLEAR = 0.0006  # left out of the contour next to a clamp [m], and as many pixels as blur reaches
 _BLUR_PIXELS = 7.0
 _WRONG_SIZE = 0.12  # a diameter off by more than that part is another specimen or another board
+_CONTRADICTS = 5.0  # standard deviations between the diameter seen and the one known: one of them is wrong
 _ROLL_SD = np.radians(0.02)  # of the board's direction in one photograph
 
 
@@ -218,6 +219,14 @@ def trace(image: Grey, board: Board, camera: Camera, specimen: Specimen, setting
         distance=distance,
         distance_sd=settings.board_distance_sd_mm * 1e-3,
     )
+    off_sd = float(np.hypot(scale.off_sd, settings.square_sd * height))
+    if abs(scale.off) > _CONTRADICTS * off_sd:
+        raise PhotoProblem(
+            f"the specimen looks {(height - scale.off) * 1e3:.2f} mm high, its section says"
+            f" {height * 1e3:.2f} mm, and what is known of both lets them differ by {off_sd * 1e3:.2g} mm"
+            " (sd): expected another section, or a larger sd of it, or squares of another size on the board",
+            show_body(image, found, body.label),
+        )
     view = locate(board, camera.with_focal(scale.focal))
     plane = -scale.distance
     body = _body(image, found, view, specimen, settings, scale.distance)  # its clamp has moved with the scale

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
+from posixpath import normpath
 from typing import Any
 
 from calibration._files import write_whole
 from calibration.errors import InputError
-from calibration.experiment import BeamTrial, Checkerboard, PhotoSettings, read, read_photo_settings
+from calibration.experiment import BeamTrial, Checkerboard, PhotoSettings, load, read, read_photo_settings
 from calibration.photo._board import Board, find_board
 from calibration.photo._camera import Camera, calibrate
 from calibration.photo._chain import LEDGER, Job, digest, kept, run
-from calibration.photo._files import png, write_copy
+from calibration.photo._files import named_files, outline_name, png, write_copy
 from calibration.photo._image import PhotoProblem, UnusablePhotographs, read_photograph
 from calibration.progress import OnProgress, Progress, to_log
 from calibration.results import Reconstruction
@@ -39,6 +40,7 @@ def reconstruct(
     ]
     if not jobs:
         raise InputError(f"{experiment}: expected a beam with captures, it has none")
+    _check_names(jobs, experiment)
     work = _Work()
     _find_boards(jobs, experiment, settings, work, on_progress)
     _run_all(jobs, target, settings, work, on_progress, resume=resume)
@@ -47,11 +49,13 @@ def reconstruct(
 
 @dataclass
 class _Work:
-    """Boards and cameras by photograph; captures that failed, with their sentences."""
+    """Boards and cameras by photograph; captures that failed, with their sentences; whether pictures of what
+    was found in some of these were written."""
 
     boards: dict[str, Board] = field(default_factory=dict)
     cameras: dict[str, Camera] = field(default_factory=dict)
     problems: dict[str, str] = field(default_factory=dict)
+    shown: bool = False
     figures: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
@@ -62,6 +66,19 @@ def _check_target(target: Path, experiment: Path) -> None:
         raise InputError(f"{target}: expected a folder other than the experiment's own")
     if (target / "experiment.yaml").exists() and not (target / LEDGER).is_dir():
         raise InputError(f"{target}: holds an experiment that this command did not write")
+
+
+def _check_names(jobs: list[Job], experiment: Path) -> None:
+    """Refuse a file of the experiment with the name of an outline that is to be traced: both go into one
+    folder, and the experiment written there would take the one for the other."""
+    main = experiment / "experiment.yaml"
+    theirs = {normpath(name): name for name in named_files(load(main.read_bytes(), main))}
+    for job in jobs:
+        if not job.traced and (name := outline_name(job.name)) in theirs:
+            raise InputError(
+                f"{main}: {theirs[name]}: expected another name of this file, it is that of the outline"
+                f" traced from {job.name}"
+            )
 
 
 def _find_boards(
@@ -142,6 +159,7 @@ def _run_all(
             picture = work.figures.pop(job.name)["picture"]
             if picture is not None:
                 write_whole(target / "problems" / f"{job.name}.png", png(picture))
+                work.shown = True
         on_progress(Progress(message=f"{job.name}: {outcome}", done=number, total=len(jobs)))
 
 
@@ -152,10 +170,10 @@ def _sentence(job: Job, error: InputError) -> str:
 
 def _finish(jobs: list[Job], folder: Path, target: Path, work: _Work, *, skip_bad: bool) -> Reconstruction:
     if work.problems and not skip_bad:
+        shown = f" (pictures of what was found in {target / 'problems'})" if work.shown else ""
         raise UnusablePhotographs(
-            f"{len(work.problems)} of {len(jobs)} captures cannot be used (pictures of what was found in "
-            f"{target / 'problems'}); {len(work.figures)} are traced and kept; take them again, or leave "
-            "them out with --skip-bad",
+            f"{len(work.problems)} of {len(jobs)} captures cannot be used{shown}; {len(work.figures)} are"
+            " traced and kept; take them again, or leave them out with --skip-bad",
             work.problems,
         )
     for job in jobs:

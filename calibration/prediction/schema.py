@@ -43,7 +43,7 @@ class Score(_Strict):
     rms : of predicted less measured.
     coverage : fraction of the points that lie within their intervals.
     sd : root mean square of the interval's standard deviation, by source: parameters, specimens, noise, model
-        error.
+        error, choice.
     """
 
     rms: NotNegative

@@ -19,8 +19,8 @@ from calibration.errors import InputError, OptionError
 from calibration.experiment.model import Experiment, Trial
 from calibration.measurements._effect import Candidate
 from calibration.measurements._kinds import Kind, kind_of
-from calibration.measurements._layers import Layers
 from calibration.measurements._model import MeasurementModel
+from calibration.measurements._noise_known import NoiseKnown
 from calibration.measurements._state import State
 from calibration.prediction._interval import Calibrated, all_moduli, of_unseen, predict_records
 from calibration.prediction.run import (
@@ -118,14 +118,14 @@ def _same_model(kind: Kind, wanted: Experiment) -> bool:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Fitted:
-    """Fits to the trials that are fitted, by name; the model's options; what was found, for people; scatter
-    between repeats; fits of what the trials cannot tell from the extension."""
+    """Fits to the trials that are fitted, by name; the model's options; what was found, for people; their
+    noise; fits of what the trials cannot tell from the extension."""
 
     model: MeasurementModel
     options: dict[str, Any]
     fits: dict[Name, Fit]
     sentence: str
-    layers: Layers
+    noise: NoiseKnown
     alternatives: tuple[Fit, ...] = ()
 
 
@@ -156,7 +156,7 @@ def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fi
         options=asked[id(model)],
         fits=fits,
         sentence=found.sentence(),
-        layers=found.noise.layers,
+        noise=found.noise,
         alternatives=alternatives,
     )
 
@@ -188,7 +188,7 @@ def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMess
         options=options,
         fits={BASELINE: base, EXTENDED: best},
         sentence=f"The extension was asked for, not found: {best.label}.",
-        layers=known.layers,
+        noise=known,
     )
 
 
@@ -241,12 +241,12 @@ def _within(
         model = model_of(together, kind=kind.name, workers=workers, **found.options)
         fold = np.isin(model.row_record, [k for k, r in enumerate(model.records) if r.groups["trial"] in ids])
         train = model.subset(fold, others=True)
-        train.take_scatter(found.layers)
+        train.take_noise(found.noise)
         on_progress("predicting")
 
         def ahead() -> MeasurementModel:
             test = model.subset(fold, others=False)
-            test.take_scatter(found.layers, predicted=True)
+            test.take_noise(found.noise, predicted=True)
             return test
 
         def again(old: Fit, name: str) -> tuple[MeasurementModel, Calibrated]:

@@ -67,7 +67,7 @@ def _by_options(folder: Path, results: Sequence[Calibration]) -> dict[tuple[str,
 def _options(folder: Path, result: Calibration) -> tuple[str, ...]:
     """Options of a fit's command beside its law, terms and material."""
     words: list[str] = []
-    for spec in result.parts:
+    for spec in result.asked or result.parts:
         asks = part_kind(spec).option
         words += [f"--{asks}"] if asks == spec else [f"--{asks}", spec]
     header = _header(folder, result)

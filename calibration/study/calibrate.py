@@ -31,7 +31,7 @@ from calibration.inference import (
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.dice import DiceObjective
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.parameters import Parametrisation, part_entry
+from calibration.parameters import Parametrisation, implausible, part_entry
 from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
 from calibration.study.calibration import Calibration, HeldOut, Status
 from calibration.study.measurements import Measurements
@@ -39,7 +39,6 @@ from calibration.study.measurements import Measurements
 Array = NDArray[np.float64]
 
 BULK = "bulk_ratio"
-SOFTEST, STIFFEST = 100.0, 1e7  # shear moduli [Pa]: beyond them a unit was mistaken, as a rule
 
 
 def held_out(
@@ -349,11 +348,7 @@ def _is_dice(objective: Objective) -> bool:
 def _note(data: Measurements, shear_modulus: float) -> str:
     """Notes for the reader of the result, beyond its status."""
     notes = [note for o in data.objectives if isinstance(o, ModelObjective) for note in o.shortcomings()]
-    if not SOFTEST <= shear_modulus <= STIFFEST:
-        notes.append(
-            f"a shear modulus of {shear_modulus:.3g} Pa is outside what soft tissue and rubber have"
-            f" ({SOFTEST:g} Pa to {STIFFEST / 1e6:g} MPa): check the units of the records (kPa, N, mm)"
-        )
+    notes.append(implausible(shear_modulus))
     return "; ".join(n for n in notes if n)
 
 

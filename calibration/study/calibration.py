@@ -103,6 +103,8 @@ class Calibration:
     parts : tuple of str
         What the material has beside the law ("prony:2", "mullins"); moduli are then long-time ones, those of
         the first loading.
+    asked : tuple of str
+        These as they were asked for, where the data chose among several ("prony"); else empty.
     held : mapping
         What it has beside the law and the fit did not search, by the field of `tisim.Material`, as a card
         states it.
@@ -145,6 +147,7 @@ class Calibration:
     lacking: tuple[str, ...] = ()
     unsettled: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
+    asked: tuple[str, ...] = ()
     protocol: Mapping[str, float] = field(default_factory=dict)
     held: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
@@ -218,7 +221,7 @@ class Calibration:
     def from_json(data: Mapping[str, Any]) -> Calibration:
         """The inverse of `to_json`. A result of an earlier version is assessed now."""
         known = dict(data)
-        for name in ("lacking", "unsettled", "parts"):
+        for name in ("lacking", "unsettled", "parts", "asked"):
             known[name] = tuple(known.get(name, ()))
         known["estimates"] = tuple(Estimate(**_nan(e)) for e in known["estimates"])
         known["held_out"] = tuple(HeldOut(**_nan(h)) for h in known["held_out"])

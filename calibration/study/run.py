@@ -133,7 +133,7 @@ def fit_task(
             t.store().result() or fit_task(t, workers=workers, on_generation=on_generation)
             for t in task.alternatives
         ]
-        result = parts.choose(found)
+        result = replace(parts.choose(found), asked=task.parts)
         store.finish(result, chosen_from=[t.name for t in task.alternatives])
         return result
     experiment = OnSetup.of(task.experiment, task.setup)
@@ -188,7 +188,7 @@ def stopped(tasks: Sequence[Task], experiment: Experiment) -> list[Calibration]:
             ended = stopped(task.alternatives, experiment)
             if not ended:
                 continue
-            result = parts.choose(ended)
+            result = replace(parts.choose(ended), asked=task.parts)
             waiting = [own.label for own in task.alternatives if own.store().result() is None]
             if waiting:
                 said = f"the best so far: {', '.join(waiting)} had not ended"

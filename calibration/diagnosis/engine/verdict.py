@@ -22,7 +22,7 @@ from calibration.diagnosis.engine.shares import Interval
 from calibration.measurements._effect import Candidate, HandedOn
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import STATED, NoiseKnown
-from calibration.parameters import Parameters
+from calibration.parameters import Parameters, implausible
 
 Array = NDArray[np.float64]
 
@@ -181,6 +181,12 @@ class Diagnosis:
         """Fit with the named causes; the baseline's fit if none is named."""
         return self.finding.baseline if self.chosen is None else self.chosen.fit
 
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        """A sentence for each material whose shear modulus no soft material has."""
+        moduli = (self.extended or self.baseline).shear_modulus_Pa
+        return tuple(f"{name}: {said}" for name, g in moduli.items() if (said := implausible(g)))
+
     def causes(self) -> list[dict[str, Any]]:
         """One entry of diagnosis.json for each cause of the chosen explanation."""
         if self.chosen is None:
@@ -219,7 +225,7 @@ class Diagnosis:
                 }
                 for i in self.undetectable
             ],
-            "notes": list(self.notes),
+            "notes": [*self.implausible, *self.notes],
             "seconds": round(self.seconds, 1),
         }
 

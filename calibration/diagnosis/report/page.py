@@ -84,7 +84,7 @@ def render(
         gain=tables.gain_sentence(data),
         invisible_headings=tables.INVISIBLE,
         invisible=tables.invisible_rows(diagnosis),
-        notes=diagnosis.notes,
+        notes=(*diagnosis.implausible, *diagnosis.notes),
         method=method(diagnosis, model, model.noise_sentence()),
     )
 

@@ -130,6 +130,25 @@ def test_a_cause_that_is_as_large_as_it_can_be_is_noted() -> None:
         assert [n for n in found.notes if "physical limit" in n] == noted
 
 
+def test_moduli_that_no_soft_material_has_are_noted() -> None:
+    """Records in MPa that were said to be in kPa had a verdict like any other."""
+    found = diagnose(FakeModel(drawn=noise(1)))
+    usual = replace(found.baseline, shear_modulus_Pa={"S0": 30e3, "S1": 9e6})
+    assert replace(found, baseline=usual).implausible == ()
+    assert written(replace(found, baseline=usual))["notes"] == list(found.notes)
+    stiff = replace(found, baseline=replace(usual, shear_modulus_Pa={"S0": 30e3, "S1": 30e6}))
+    said = (
+        "S1: a shear modulus of 3e+07 Pa is outside what soft tissue and rubber have (100 Pa to 10 MPa):"
+        " check the units of the records (kPa, N, mm)"
+    )
+    assert written(stiff)["notes"] == [said, *found.notes]
+    # with a cause the modulus is that beside it
+    assert replace(stiff, extended=usual).implausible == ()
+    assert replace(found, extended=replace(usual, shear_modulus_Pa={"S0": 3.0})).implausible[0][:16] == (
+        "S0: a shear modu"
+    )
+
+
 def test_where_else_a_cause_may_sit_is_a_note() -> None:
     """A bend in the beams of S0 alone is a candidate for all beams, and for S0."""
     shapes = library()

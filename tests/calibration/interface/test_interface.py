@@ -131,6 +131,24 @@ def test_fits_write_cards_and_a_page(fits: Fits, tmp_path: Path) -> None:
     assert fits.write_report(tmp_path / "page").read_text().count("<h2>rubber</h2>") == 1
 
 
+def test_a_card_of_an_earlier_run_is_not_taken_for_a_fit_that_has_none(
+    fits: Fits, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The function said nothing, and the folder looked as after a fit that had ended well."""
+    (card,) = fits.write_cards(tmp_path)
+    before = card.read_bytes()
+    assert not caplog.records
+    lost = replace(fits[0], status="no equilibrium", parameters={}, estimates=())
+    unusable = Fits((lost,), fits.experiment)
+    assert unusable.write_cards(tmp_path) == []
+    assert caplog.messages == [
+        f"rubber: no card, since no law has a finished fit; {card} is an earlier run's"
+    ]
+    assert card.read_bytes() == before
+    assert unusable.write_cards(tmp_path / "new") == []
+    assert caplog.messages[1:] == ["rubber: no card, since no law has a finished fit"]
+
+
 def test_progress_is_one_callback(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     seen: list[Progress] = []
     with caplog.at_level(logging.INFO, logger="calibration"):
@@ -184,6 +202,7 @@ def test_a_single_name_is_one_name(folder: Path) -> None:
 def test_a_diagnosis_prints_itself(folder: Path) -> None:
     class Stub:
         next_experiment = "pull it <slowly>"
+        implausible = ("gel: a shear modulus <of glass>",)
 
         def sentence(self) -> str:
             return "Found: the material <creeps> (creep)."
@@ -196,6 +215,8 @@ def test_a_diagnosis_prints_itself(folder: Path) -> None:
     assert "creep, all, ratio, 0.25 ± 0.01" in repr(result)
     assert "&lt;creeps&gt;" in result._repr_html_()
     assert "&lt;slowly&gt;" in result._repr_html_()
+    assert "gel: a shear modulus <of glass>" in repr(result).splitlines()
+    assert "<p>gel: a shear modulus &lt;of glass&gt;</p>" in result._repr_html_()
 
 
 @pytest.mark.parametrize(

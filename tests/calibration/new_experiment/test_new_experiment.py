@@ -224,9 +224,23 @@ def test_the_printed_board_is_found_at_its_true_size() -> None:
 
 
 @pytest.mark.parametrize("page", ["a4", "a3", "letter"])
-def test_a_board_too_large_for_its_page_is_refused(page: str) -> None:
-    with pytest.raises(InputError, match=f"does not fit on {page}: expected at most"):
-        board_pdf(BoardAnswers(squares=(9, 6), square_mm=60.0, page=page))  # type: ignore[arg-type]
+@pytest.mark.parametrize("squares", [(9, 6), (5, 12), (60, 60)])
+@pytest.mark.parametrize("asked", [60.0, 150.0])
+def test_a_board_too_large_for_its_page_is_refused(page: str, squares: tuple[int, int], asked: float) -> None:
+    """The side that is said to fit is the largest, whatever was asked for: it was -3.67 mm for one of 100."""
+    with pytest.raises(InputError, match=f"does not fit on {page}: expected at most") as refused:
+        board_pdf(BoardAnswers(squares=squares, square_mm=asked, page=page))  # type: ignore[arg-type]
+    side = float(str(refused.value).split()[-2])
+    assert board_pdf(BoardAnswers(squares=squares, square_mm=side, page=page))  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=f"expected at most {side:g} mm"):
+        board_pdf(BoardAnswers(squares=squares, square_mm=side + 0.1, page=page))  # type: ignore[arg-type]
+
+
+def test_the_next_command_can_be_typed_as_it_is_shown(tmp_path: Path) -> None:
+    out = tmp_path / "our lab"
+    code, shown, _ = new("--yes", SAMPLES / "answers.yaml", "--out", out)
+    assert code == 0
+    assert shown.rstrip().endswith(f"next: python -m calibration.fit '{out}'")
 
 
 def test_the_command_starts_light_and_is_listed() -> None:
@@ -264,7 +278,7 @@ def test_what_was_typed_is_shown_where_it_cannot_be_used(tmp_path: Path) -> None
     out = tmp_path / "lab"
     code, shown, said = new(outline, "--out", out, typed="\n".join(typed) + "\n")
     assert code == 2
-    assert said.startswith(f"error: {out}/beams/S0.5-cantilever-100-t100.csv: line "), said
+    assert said.startswith(f"error: {outline}: line "), said
     assert "free_length_mm: 20.0" in shown
     code, _, said = new(outline, "--out", out, typed="\n".join(typed[:5]) + "\n")
     assert (code, said.strip()) == (130, "Stopped: nothing was written.")

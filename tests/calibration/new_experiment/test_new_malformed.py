@@ -361,7 +361,7 @@ CASES: dict[str, tuple[str, Change, dict[str, Any], str, str]] = {
         "push",
         same,
         {"start_mm": [40.0, 0.0, 20.0]},
-        "lab/experiment.yaml: key trials[push].start_mm:",
+        "answers.yaml: key trials[push].start_mm:",
         "above the block's base",
     ),
     "unknown check": (
@@ -477,6 +477,15 @@ def test_malformed_imports_are_refused(case: str, tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == before
 
 
+def test_a_material_that_no_trial_has_is_refused(tmp_path: Path) -> None:
+    """A name that was misspelt left the trial's material without the density that stood under it."""
+    path = lab(tmp_path, "strip", same, {"material": "gell"})
+    done = CliRunner().invoke(app, ["--yes", str(path), "--out", str(tmp_path / "lab")])
+    assert done.exit_code == 2
+    assert done.stderr == f"error: {path}: key materials.gel: expected a material of a trial (gell)\n"
+    assert not (tmp_path / "lab").exists()
+
+
 def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
     """A modulus of 75 MPa is accepted if the answers name the check."""
     trial, change, _, _, _ = CASES["MPa for kPa"]
@@ -493,6 +502,15 @@ def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
         ("- 1\n", "expected keys and values at the top level"),
         ("name: x\nname: y\n", "line 2: key name stands there twice"),
         ("name: [x\n", "line 2: expected valid YAML"),
+        (
+            "name: x\nphotographs: {board_distance_mm: 12.0}\ntrials:\n- {id: a, kind: coupon, file: f}\n",
+            "key photographs: expected none without a capture that has a photo",
+        ),
+        # the list of trials is not said to be wrong beside its one wrong trial
+        (
+            "name: x\ntrials:\n- {id: a, kind: coupon, file: f, mode: pull}\n",
+            "'planar' or 'simple-shear', got 'pull'\n",
+        ),
         (
             "name: x\ntrials:\n- {id: a, kind: coupon, file: f}\n- {id: a, kind: coupon, file: f}\n",
             "expected different ids, trial #2 has the id a again",

@@ -190,15 +190,19 @@ def without(own: dict[str, Any], *keys: str) -> dict[str, Any]:
         ({**BAR, **MARKED, "markers": "none.csv"}, "none.csv: key bar.markers: expected a file"),
         (
             {**BAR, **MARKED, "marker_positions_mm": {"end": [100.0, 0.0, 0.0]}},
-            "beams/tracked.csv: line 2: column marker: expected one of marker_positions_mm (end), got 'tip'",
+            "/tracked.csv: line 2: column marker: expected one of marker_positions_mm (end), got 'tip'",
         ),
         (
             {**BAR, "captures": [{"time_s": 1.0, "photo": "p.jpg", "registration_shared_sd": SHARED}]},
             "key trials[bar].captures[#1].registration_shared_sd: expected an outline beside it",
         ),
         (
+            {**BAR, "captures": [{"time_s": 1.0}]},
+            "answers.yaml: key trials[bar].captures[#1].outline: missing, expected an outline or a photo",
+        ),
+        (
             {**BAR, **MARKED, "captures": [CAPTURE], "tip_force_N": [0, 0, -1.0], "tip_force_height_mm": 1.0},
-            "experiment.yaml: key trials[bar].tip_force_height_mm: expected with markers only",
+            "answers.yaml: key trials[bar].tip_force_height_mm: expected with markers only",
         ),
     ],
 )
@@ -208,6 +212,7 @@ def test_beams_that_cannot_be_are_refused(trial: dict[str, Any], said: str, file
     (sentence,) = done.stderr.strip().splitlines()
     assert said in sentence, sentence
     assert not (files / "lab").exists()
+    assert str(files / "lab") not in sentence  # where nobody can look
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter
 import tisim
 from benchmarks.blind.camera import Clamp, Lens, Setting, Tube, View, photograph
 from calibration.experiment import Checkerboard
-from calibration.photo import PhotoProblem, PhotoSettings, Specimen, calibrate, find_board, trace
+from calibration.photo import PhotoProblem, PhotoSettings, Specimen, Trace, calibrate, find_board, trace
 
 BOARD = Checkerboard(squares=(9, 6), square=0.008)
 LENS = Lens(size=(800, 600), focal=1860.0, centre=(400.0, 298.0))
@@ -83,6 +83,27 @@ def test_blurred(good: np.ndarray) -> None:
 def test_wrong_squares(good: np.ndarray) -> None:
     with pytest.raises(PhotoProblem, match=r"looks 2\d\.\d mm high, its section says 20.0 mm"):
         go(good, board=Checkerboard(squares=(9, 6), square=0.010))
+
+
+def test_a_section_that_contradicts_the_board_is_said() -> None:
+    """A board printed at 96 %, or a radius that is wrong by as much: lengths were wrong, with the sd of right
+    ones."""
+    image = photograph(GOOD, LENS, View(yaw=20.0))
+    found = find_board(image, BOARD)
+
+    def traced(radius: float, sd: float) -> Trace:
+        section = replace(SPECIMEN, section=tisim.Circle(radius=radius), section_sd=sd)
+        return trace(image, found, calibrate([found]), section, PhotoSettings())
+
+    said = r"looks (19\.9|20\.0)\d mm high, its section says 20\.80 mm, and .* differ by 0\.1\d? mm \(sd\)"
+    with pytest.raises(PhotoProblem, match=said) as caught:
+        traced(0.0104, 1e-4)
+    assert caught.value.picture is not None
+    assert traced(0.0104, 1e-3).diameter == pytest.approx(0.020, abs=2e-4)  # hardly known: the board decides
+    assert traced(0.0101, 1e-4).outline.shared.scale < 0.003
+    squares = PhotoSettings(square_sd=0.02)
+    wide = replace(SPECIMEN, section=tisim.Circle(radius=0.0104))
+    assert trace(image, found, calibrate([found]), wide, squares).outline.shared.scale > 0.02
 
 
 def test_lying_board(good: np.ndarray) -> None:

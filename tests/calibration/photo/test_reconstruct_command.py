@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -15,7 +16,8 @@ from typer.testing import CliRunner, Result
 
 from benchmarks.blind.camera import Lens, Setting, Tube, View, photograph
 from calibration.errors import InputError
-from calibration.experiment import BeamTrial, read
+from calibration.experiment import BeamTrial, PhotoSettings, read
+from calibration.experiment.model import Registration
 from calibration.photo import reconstruction
 from calibration.photo._image import read_photograph
 from calibration.reconstruct import app
@@ -65,7 +67,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "captures": captures,
     }
     # a file that experiment.yaml does not name, with the name of an outline that is traced
-    (folder / "outlines").mkdir()
+    (folder / "outlines").mkdir(exist_ok=True)
     (folder / "outlines" / "hang-1.csv").write_text("side,x_mm,z_mm\nan old one\n")
     raw = {"format": 1, "name": "lab", "materials": {"S": {}}, "trials": [trial]}
     (folder / "experiment.yaml").write_text(yaml.safe_dump(raw))
@@ -156,7 +158,8 @@ def test_bad_photograph(lab: Path, tmp_path: Path) -> None:
     result = command(folder, "--out", out)
     assert result.exit_code == 2
     assert "hang-1 (first.png): no board of 9 x 6 squares was found" in result.output
-    assert "1 of 3 captures cannot be used" in result.output
+    shown = f"(pictures of what was found in {out / 'problems'})"
+    assert f"1 of 3 captures cannot be used {shown}; 2 are traced" in result.output
     assert not (out / "experiment.yaml").exists()
     assert (out / "problems" / "hang-1.png").exists()
     result = command(folder, "--out", out, "--skip-bad")
@@ -192,7 +195,7 @@ def test_a_board_that_no_lens_fits_leaves_the_outlines(
     result = command(lab, "--out", tmp_path / "out")
     assert result.exit_code == 2
     assert "hang-1 (first.png): camera: the board's corners miss" in result.output
-    assert "2 of 3 captures cannot be used" in result.output
+    assert "2 of 3 captures cannot be used; 1 are traced" in result.output  # no picture shows a lens
     assert command(lab, "--out", tmp_path / "out", "--skip-bad").exit_code == 0
 
 
@@ -260,6 +263,37 @@ def test_bad_settings(lab: Path, tmp_path: Path, text: str, sentence: str) -> No
     assert result.exit_code == 2
     assert sentence in result.output
     assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["outlines/hang-1.csv", "./outlines//hang-1.csv"])
+def test_a_given_outline_is_not_taken_for_a_traced_one(lab: Path, tmp_path: Path, name: str) -> None:
+    """It was copied over the outline that was traced from another photograph."""
+    folder, out = tmp_path / "lab", tmp_path / "out"
+    shutil.copytree(lab, folder)
+    (folder / "outlines").mkdir(exist_ok=True)
+    (folder / "traced.csv").rename(folder / name)
+    main = folder / "experiment.yaml"
+    main.write_text(main.read_text().replace("traced.csv", name))
+    result = command(folder, "--out", out)
+    assert result.exit_code == 2
+    sentence = f"{main}: {name}: expected another name of this file, it is that of the outline traced from"
+    assert f"{sentence} hang-1\n" in result.output
+    assert not out.exists()
+
+
+def test_what_is_known_of_a_given_outline_is_kept_with_it(lab: Path) -> None:
+    """The registration in reconstruct.json stayed that of an earlier experiment.yaml."""
+    (trial,) = read(lab).trials
+    assert isinstance(trial, BeamTrial)
+    capture = trial.captures[2]
+    assert capture.outline is not None
+    keys = set()
+    for error in (capture.outline.registration, Registration(shift=5e-4)):
+        for shared in (capture.outline.shared, Registration(scale=0.01)):
+            changed = replace(capture, outline=replace(capture.outline, registration=error, shared=shared))
+            job = reconstruction.Job(name="hang-3", trial=trial, number=2, capture=changed)
+            keys.add(reconstruction.digest(job, None, None, PhotoSettings()))
+    assert len(keys) == 4
 
 
 def test_targets_it_refuses(lab: Path, tmp_path: Path) -> None:

@@ -146,6 +146,11 @@ def test_fits_of_several_runs_have_a_command_each(tmp_path: Path) -> None:
         f"{start} ogden --material A --terms 2 --seed 1 {end}",
         f"{start} mooney-rivlin --material A --seed 5 {end}",
     ]
+    # the number of terms was left to the data: so does the command that makes the fit again
+    chosen = replace(timed, asked=("prony",))
+    assert commands(tmp_path, [chosen], read(tmp_path / "data")) == [
+        f"{start} neo-hookean --material A --time prony --seed 1 {end}"
+    ]
     assert commands(tmp_path, [calibration(), two], read(tmp_path / "data")) == [
         f"{start} neo-hookean,ogden --material A --terms 2 --seed 1 {end}"
     ]

@@ -17,6 +17,7 @@ from calibration.inference import Generation, Problem
 from calibration.parameters import parametrisation
 from calibration.study import Calibration, stopped, tasks_for
 from calibration.study._store import FitStore, locked, remove_fits
+from calibration.study.run import fit_task
 from tisim import laws
 
 HEADER = {"format": 2, "seed": 1}
@@ -244,6 +245,12 @@ def test_a_choice_that_was_stopped_is_not_made(tmp_path: Path) -> None:
         other.store().finish(replace(ended, label=other.label, chi2=31.0, parts=other.parts))
     (found,) = stopped([task], own)
     assert (found.status, found.label) == ("converged", one.label)
+    # what was asked for is kept beside what the data chose
+    assert (found.parts, found.asked) == (one.parts, ("prony",))
+    assert fit_task(task, workers=1).asked == ("prony",)
+    kept = task.store().result()
+    assert kept is not None
+    assert (kept.parts, kept.asked) == (one.parts, ("prony",))
 
 
 def test_a_stopped_search_whose_best_has_no_answer_any_more_tells_nothing(

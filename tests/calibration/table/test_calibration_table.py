@@ -264,6 +264,19 @@ def test_folder_that_holds_no_fits_is_refused(tmp_path, experiment):
     assert not list(empty.iterdir())
 
 
+def test_a_target_that_is_a_file_is_refused_before_anything_is_computed(
+    tmp_path, experiment, fits, monkeypatch
+):
+    monkeypatch.setattr("calibration.study.paper_table.row", None)
+    (tmp_path / "out").write_text("mine")
+    arguments = [str(experiment), "--fits", str(fits.parent), "--no-run", "--out", str(tmp_path / "out")]
+    found = RUNNER.invoke(app, arguments)
+    assert found.exit_code == 2
+    assert found.stderr == f"error: --out {tmp_path / 'out'}: expected a folder, found a file\n"
+    found = RUNNER.invoke(app, [str(experiment), "--fits", str(tmp_path / "out"), "--no-run"])
+    assert found.stderr.startswith(f"error: --fits {tmp_path / 'out'}: expected a folder that")
+
+
 def test_unknown_law_is_refused(experiment):
     found = RUNNER.invoke(app, [str(experiment), "--model", "hooke"])
     assert found.exit_code == 2
