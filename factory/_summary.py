@@ -91,6 +91,7 @@ def summarise(path: str | Path) -> Summary:
         return _of_staging(path)
     data = open_dataset(path)
     data.check_rows()
+    data.check_sums()
     table, attributes = data.table, data.attributes
     force = np.linalg.norm(table["rod_force"], axis=1)
     done, failed = [], {}
