@@ -64,6 +64,8 @@ def main(
             raise InputError("--picture: expected --poke N with it")
         summary = summarise(dataset)
         console.print(_overview(summary))
+        if summary.replacement:
+            console.print(summary.replacement)
         if summary.done:
             console.print(_reached(summary))
             console.print(_causes(summary))
