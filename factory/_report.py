@@ -285,7 +285,8 @@ class Screen:
             self._line = now
             failed = f", {state.failed} failed" if state.failed else ""
             self._console.print(f"{state.done} of {state.total} pokes done{failed}, {left}")
-        if now - self._picture > _PICTURE_SECONDS:
+        # the preview beside a whole store is its own until it is replaced
+        if now - self._picture > _PICTURE_SECONDS and not state.staging.overwriting.exists():
             self._draw()
             self._picture = time.monotonic()
 

@@ -12,7 +12,7 @@ import math
 import os
 import stat
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Self
 
@@ -236,18 +236,46 @@ def manifest_faults(folder: Path) -> list[str]:
 
 def missing_files(store: Path | zipfile.Path) -> list[str]:
     """Files of the manifest that the store lacks; none if the manifest cannot be read."""
-    try:
-        content = read_json(store / MANIFEST)
-    except (OSError, ValueError, KeyError):
-        return []
-    listed = content.get("sha256") if isinstance(content, dict) else None
-    if not isinstance(listed, dict):
-        return []
+    listed = _listed(store) or {}
     if isinstance(store, zipfile.Path):
         found = set(store.root.namelist())
     else:
         found = {name for name, _, _ in plain_files(store)}
     return sorted(name for name in listed if name not in found)
+
+
+def altered_files(store: Path | zipfile.Path, arrays: Collection[str]) -> list[str]:
+    """Files of these arrays whose sha256 is not the manifest's.
+
+    Raises
+    ------
+    DamagedError
+        If the manifest cannot be read.
+    """
+    listed = _listed(store)
+    if listed is None:
+        raise DamagedError(f"{store / MANIFEST}: missing or damaged, the dataset cannot be checked")
+    mine = (name for name in sorted(listed) if name.partition("/")[0] in arrays and _stays_inside(name))
+    return [name for name in mine if _sha256(store / name) != listed[name]]
+
+
+def _listed(store: Path | zipfile.Path) -> dict[str, object] | None:
+    """Digests of the manifest by file; None if it cannot be read."""
+    try:
+        content = read_json(store / MANIFEST)
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+        return None
+    listed = content.get("sha256") if isinstance(content, dict) else None
+    return listed if isinstance(listed, dict) else None
+
+
+def _sha256(path: Path | zipfile.Path) -> str | None:
+    """Digest of a file; None if there is none, or a zip's entry is damaged."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]
+    except (FileNotFoundError, zipfile.BadZipFile):
+        return None
 
 
 def _stays_inside(name: str) -> bool:

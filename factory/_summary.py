@@ -60,6 +60,8 @@ class Summary:
         Wall times by index.
     waiting : int
         Number of pokes that a partial store lacks.
+    replacement : str
+        Sentence on a build that is to replace the store and is not complete; empty without one.
     """
 
     path: Path
@@ -75,6 +77,7 @@ class Summary:
     ledger: dict[int, dict[str, Any]]
     damaged: dict[int, str] = field(default_factory=dict)
     waiting: int = 0
+    replacement: str = ""
 
 
 def summarise(path: str | Path) -> Summary:
@@ -91,6 +94,7 @@ def summarise(path: str | Path) -> Summary:
         return _of_staging(path)
     data = open_dataset(path)
     data.check_rows()
+    data.check_sums()
     table, attributes = data.table, data.attributes
     force = np.linalg.norm(table["rod_force"], axis=1)
     done, failed = [], {}
@@ -127,7 +131,32 @@ def summarise(path: str | Path) -> Summary:
         failed=failed,
         waiting=len(waiting),
         ledger=read_ledger(data.root / LEDGER),
+        replacement=_replacement(Staging(path)),
     )
+
+
+def _replacement(staging: Staging) -> str:
+    """Sentence on a build that is to replace a finished store; empty if none was begun."""
+    if not staging.overwriting.exists():
+        return ""
+    text = f"{staging.folder.name}: a build that replaces this dataset when it is complete has been begun"
+    try:
+        begun = staging.read_plan()
+        if begun is None:
+            return ""
+        identity = check_identity(begun, staging.plan_file)
+    except InputError as error:  # no fault of the dataset that is there
+        return f"{text}, but {error}"
+    return (
+        f"{text}: recipe {identity['recipe']['name']}, {identity['model']}, {len(staging.finished())} of"
+        f" {_planned(identity['recipe'])} pokes so far"
+    )
+
+
+def _planned(recipe: dict[str, Any]) -> int:
+    """Number of pokes of a plan."""
+    each = recipe["protocol"]["shared_sites"] + recipe["protocol"]["own_sites"]
+    return int(each * len(recipe["softness"]) * len(recipe["shapes"]))
 
 
 def _of_staging(path: Path) -> Summary:
@@ -142,7 +171,7 @@ def _of_staging(path: Path) -> Summary:
     shapes = [shape["id"] for shape in recipe["shapes"]]
     levels = list(recipe["softness"])
     each = recipe["protocol"]["shared_sites"] + recipe["protocol"]["own_sites"]
-    total = each * len(levels) * len(shapes)
+    total = _planned(recipe)
     done, damaged = [], {}
     for index in sorted(staging.finished()):
         try:

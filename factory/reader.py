@@ -25,7 +25,7 @@ from factory._errors import InputError, describe_os_error, one_line
 from factory._record import STATUSES
 from factory._schema import NOT_SIMULATED, Spec, specs_of
 from factory._staging import building_folder
-from factory._store import DamagedError, missing_files, plain_files, root_attributes
+from factory._store import DamagedError, altered_files, missing_files, plain_files, root_attributes
 from factory.plan import FORMAT
 from tisim import Inclusion, inclusions
 
@@ -214,6 +214,15 @@ class Dataset:
         """Rows of a poke in the arrays that count frames, nodes, triangles or values."""
         start = int(self.table[f"{counted}_start"][index])
         return slice(start, start + int(self.table[f"{counted}_count"][index]))
+
+    def check_sums(self) -> None:
+        """Raise DamagedError if a file of the tables differs from the manifest.
+
+        A flipped bit may decode to another value without an error.
+        """
+        altered = altered_files(self.root, self.specs.keys() - _BIG)
+        if altered:
+            raise DamagedError(f"{self.path / altered[0]}: its sha256 differs from the manifest")
 
     def check_rows(self) -> None:
         """Raise DamagedError if lengths of tables contradict the attributes or the tables' own counts."""

@@ -282,6 +282,8 @@ def predict(
             console.print(
                 "no intervals: learn.evaluate makes them where there are two or more validation pokes"
             )
+        elif answer.force_interval is None:
+            console.print("no interval of the force, which is predicted to be 0 N or less")
         console.print(answer.verdict)
         for check in answer.checks:
             if not check.inside:

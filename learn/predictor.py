@@ -49,7 +49,8 @@ class PokePrediction:
     displacement : displacement of these points [m], shape (n, 3).
     force : magnitude of the force on the indenter [N].
     radius : radius of the 90 % interval at each point [m], shape (n,); None without intervals.
-    force_interval : 90 % interval of the force [N]; None without intervals.
+    force_interval : 90 % interval of the force [N]; None without intervals, and for a predicted force that is
+        0 or less, as model cegnn may have it, around which no factor makes an interval.
     checks : comparison of each quantity with its trained range.
     scene, pokes : the model's input.
     """
@@ -96,9 +97,10 @@ class PokePrediction:
             "force_N": self.force,
             "largest_displacement_mm": float(size.max() * 1e3),
         }
-        if self.radius is not None and self.force_interval is not None:
+        if self.force_interval is not None:
             low, high = self.force_interval
             answer |= {"force_low_N": low, "force_high_N": high}
+        if self.radius is not None:
             answer |= {"radius_mean_mm": float(self.radius.mean() * 1e3)}
             answer |= {"radius_max_mm": float(self.radius.max() * 1e3)}
         answer["inside_training"] = self.inside
@@ -137,7 +139,8 @@ class PokePrediction:
     @property
     def _force_text(self) -> str:
         if self.force_interval is None:
-            return f"{self.force:.3g} N"
+            why = "" if self.radius is None else " (no interval: it is 0 N or less)"
+            return f"{self.force:.3g} N{why}"
         low, high = self.force_interval
         return f"{self.force:.3g} N (90 %: {low:.3g} to {high:.3g})"
 
@@ -254,7 +257,7 @@ class Predictor:
             displacement=u[0],
             force=force,
             radius=radius,
-            force_interval=None if factor is None else (force / factor, force * factor),
+            force_interval=(force / factor, force * factor) if factor is not None and force > 0.0 else None,
             checks=self.domain.check(*asked) if self.domain else unknown_checks(*asked),
             scene=scene,
             pokes=pokes,

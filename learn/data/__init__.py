@@ -1,6 +1,6 @@
 """Reading the dataset: the store, its folds, frames in memory or streamed, statistics."""
 
-from learn.data.folds import FOLDS, Split, contact_points, split_of, split_of_run, split_pokes
+from learn.data.folds import FOLDS, Split, contact_points, interiors, split_of, split_of_run, split_pokes
 from learn.data.loaders import Batch, MemoryDataset, StreamDataset, make_batch
 from learn.data.setup import Setup
 from learn.data.statistics import Statistics, statistics
@@ -16,6 +16,7 @@ __all__ = [
     "Store",
     "StreamDataset",
     "contact_points",
+    "interiors",
     "make_batch",
     "open_store",
     "split_of",

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import fsspec
+import google_crc32c  # of zarr
 import numpy as np
 import zarr
 from numcodecs.blosc import decompress
@@ -57,10 +58,9 @@ def group_here(location: str, *, fresh: bool = False) -> zarr.Group:
 
 
 def displacement_reader(location: str) -> ShardReader | None:
-    """The fast reader of a local store's displacement; None if zarr has to read it."""
+    """The fast reader of a store's displacement; None if zarr has to read it."""
     if location not in _readers:
-        remote = Source(location).remote
-        _readers[location] = None if remote else shard_reader(Path(location), "grid_displacement")
+        _readers[location] = shard_reader(location, "grid_displacement")
     return _readers[location]
 
 
@@ -79,6 +79,10 @@ class Source:
     @property
     def remote(self) -> bool:
         return "://" in self.location
+
+    def url(self, name: str) -> str:
+        """URL of a file of a store at a URL."""
+        return f"{self.location.rstrip('/')}/{name}"
 
     def group(self) -> zarr.Group:
         """The store's root group; InputError if there is none."""
@@ -127,7 +131,7 @@ class Source:
 
     def _check_remote(self, names: list[str]) -> None:
         for name in names:
-            files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{name}")
+            files, path = fsspec.url_to_fs(self.url(name))
             with reading(f"{self.location}: {name}"):
                 there = bool(files.exists(path))
             if not there:
@@ -153,7 +157,7 @@ class Source:
         where = f"{self.location}: {MANIFEST}"
         with reading(where):
             if self.remote:
-                files, path = fsspec.url_to_fs(f"{self.location.rstrip('/')}/{MANIFEST}")
+                files, path = fsspec.url_to_fs(self.url(MANIFEST))
                 text = files.cat_file(path)
             else:
                 with self._stored() as open_stored:
@@ -177,17 +181,17 @@ class Source:
 
 @dataclass(frozen=True)
 class ShardReader:
-    """Reader of a local store's shards, directly into the output array.
+    """Reader of a store's shards, directly into the output array.
 
     zarr-python takes three times as long for a shard of 1,024 frames as its chunks take to decompress (copies
-    and scheduling). Stores with the factory's layout, in a folder or not compressed in a zip, are read here;
-    others by zarr, with the same values.
+    and scheduling), and holds the shard several times. Stores with the factory's layout, in a folder, at a
+    URL or not compressed in a zip, are read here; others by zarr, with the same values.
 
     `location` of the store, `name` of the array, number of `rows`, rows per `chunk` and per `shard`, shape of
     a `row`.
     """
 
-    location: Path
+    location: str
     name: str
     rows: int
     chunk: int
@@ -202,33 +206,47 @@ class ShardReader:
             self._read_shard(number, low - first, high - first, out[low - start : high - start])
 
     def _read_shard(self, number: int, low: int, high: int, out: NDArray[np.float32]) -> None:
-        name = "/".join([self.name, "c", str(number), *("0" for _ in self.row)])
-        path, begin, end = self.location / name, 0, None
-        if self.location.is_file():
-            path, (begin, end) = self.location, _place(self.location, name)
+        piece = _pieces(self.location, "/".join([self.name, "c", str(number), *("0" for _ in self.row)]))
         per = self.shard // self.chunk
-        with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-            end = len(data) if end is None else end
-            table = data[end - 16 * per - _CHECKSUM : end - _CHECKSUM]
-            index = np.frombuffer(table, dtype="<u8").reshape(per, 2)
-            for k in range(low // self.chunk, -(-high // self.chunk)):
-                first = k * self.chunk
-                a, b = max(low, first), min(high, first + self.chunk)
-                where = out[a - low : b - low]
-                offset, size = (int(v) for v in index[k])
-                if offset == _ABSENT:
-                    where[...] = 0
-                    continue
-                view = memoryview(data)[begin + offset : begin + offset + size]
-                try:
-                    if b - a == self.chunk:
-                        decompress(view, where)
-                    else:
-                        whole = np.empty((self.chunk, *self.row), dtype=np.float32)
-                        decompress(view, whole)
-                        where[...] = whole[a - first : b - first]
-                finally:
-                    view.release()
+        table = piece(-16 * per - _CHECKSUM, None)
+        if google_crc32c.value(bytes(table[:-_CHECKSUM])).to_bytes(_CHECKSUM, "little") != table[-_CHECKSUM:]:
+            raise ValueError("the checksum of a shard's index is not that of the index")
+        index = np.frombuffer(table[:-_CHECKSUM], dtype="<u8").reshape(per, 2)
+        chunks = range(low // self.chunk, -(-high // self.chunk))
+        there = [k for k in chunks if index[k, 0] != _ABSENT]
+        begin = min((int(index[k, 0]) for k in there), default=0)
+        end = max((int(index[k].sum()) for k in there), default=0)
+        data = piece(begin, end) if there else memoryview(b"")  # at a URL in one request
+        for k in chunks:
+            first = k * self.chunk
+            a, b = max(low, first), min(high, first + self.chunk)
+            where = out[a - low : b - low]
+            if k not in there:
+                where[...] = 0
+                continue
+            offset, size = (int(v) for v in index[k])
+            view = data[offset - begin : offset - begin + size]
+            if b - a == self.chunk:
+                decompress(view, where)
+            else:
+                whole = np.empty((self.chunk, *self.row), dtype=np.float32)
+                decompress(view, whole)
+                where[...] = whole[a - first : b - first]
+
+
+def _pieces(location: str, name: str) -> Callable[[int, int | None], memoryview]:
+    """A function that returns the bytes of a store's file from one place to another, as slices do."""
+    source = Source(location)
+    if source.remote:
+        files, remote = fsspec.url_to_fs(source.url(name))
+        return lambda a, b: memoryview(files.cat_file(remote, a, b))
+    path, begin, end = Path(location) / name, 0, None
+    if Path(location).is_file():
+        path, (begin, end) = Path(location), _place(Path(location), name)
+    with path.open("rb") as file:
+        # unmapped with the last view of it
+        data = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))[begin:end]
+    return lambda a, b: data[a:b]
 
 
 @functools.cache
@@ -245,16 +263,20 @@ def _place(archive: Path, name: str) -> tuple[int, int]:
     return begin, begin + entry.file_size
 
 
-def shard_reader(location: Path, name: str) -> ShardReader | None:
-    """Reader of an array of a local store; None if its layout is another."""
-    if location.is_file():
+def shard_reader(location: str, name: str) -> ShardReader | None:
+    """Reader of an array of a store; None if its layout is another."""
+    source, text = Source(location), b""
+    if source.remote:
+        files, remote = fsspec.url_to_fs(source.url(f"{name}/zarr.json"))
+        text = files.cat_file(remote)
+    elif Path(location).is_file():
         with zipfile.ZipFile(location) as archive:
             compressed = any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist())
             text = archive.read(f"{name}/zarr.json")
         if compressed:
             return None
     else:
-        text = (location / name / "zarr.json").read_bytes()
+        text = (Path(location) / name / "zarr.json").read_bytes()
     meta: dict[str, Any] = json.loads(text)
     shape, grid, codecs = meta["shape"], meta["chunk_grid"]["configuration"]["chunk_shape"], meta["codecs"]
     if meta["data_type"] != "float32" or len(codecs) != 1 or codecs[0]["name"] != "sharding_indexed":

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from learn.data.store import Store
+from learn.data.store import Store, rigid_masks
 from learn.errors import InputError
 
 SplitBy = Literal["shape", "site"]
@@ -129,6 +129,21 @@ def contact_points(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
         for poke, row in zip(pokes, place, strict=True)
     )
     return np.array([hashlib.sha256(t.encode()).hexdigest()[:20] for t in texts], dtype="U20")
+
+
+def interiors(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
+    """A key of the block and the inclusion of each poke, the same in any dataset; shape (k,).
+
+    The names of shapes are no such key: recipes that draw shapes give different ones the same names.
+    """
+    masks, mask = rigid_masks(store.profile)
+    inside = [np.packbits(m).tobytes() for m in masks]
+    keys = []
+    for geometry in range(len(store.profile)):
+        sides = store.setups[int(store.setup_index[geometry])].block_size
+        text = " ".join(f"{side:.6f}" for side in sides).encode()
+        keys.append(hashlib.sha256(text + inside[int(mask[geometry])]).hexdigest()[:20])
+    return np.array(keys, dtype="U20")[store.geometry[pokes]]
 
 
 class SplitRun(Protocol):

@@ -130,9 +130,10 @@ class StreamDataset(torch.utils.data.IterableDataset[Batch]):
 
     Shards (files of the store) are read in random order into a buffer of `shuffle_buffer` shards; batches are
     drawn at random from the buffer while two other threads read the next shard. Memory is thus bounded by
-    shuffle_buffer + 2 shards (`bytes_held`), whatever the store's size, and every frame occurs exactly once
-    per epoch. Loader workers and the ranks of torchrun each take a subset of the shards, with a different
-    shuffle in each. InputError if a frame is given twice, or is none of the store.
+    shuffle_buffer + 2 shards (`bytes_held`) and, from a URL, the compressed bytes of one, whatever the
+    store's size, and every frame occurs exactly once per epoch. Loader workers and the ranks of torchrun each
+    take a subset of the shards, with a different shuffle in each. InputError if a frame is given twice, or is
+    none of the store.
 
     >>> data = StreamDataset("https://example.org/pokes.zarr", split.train, batch=64, seed=1)
     >>> data.epoch = 3

@@ -11,7 +11,7 @@ import torch
 from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store, contact_points, split_of_run
+from learn.data import MemoryDataset, Split, Store, contact_points, interiors, split_of_run
 from learn.data.clouds import SurfaceField, scattered
 from learn.errors import InputError
 from learn.evaluation.intervals import (
@@ -49,7 +49,7 @@ from learn.evaluation.summary import (
 from learn.metrics import Predictions
 from learn.models import Ensemble, Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
-from learn.training import Recipe, Run, known_domain
+from learn.training import Recipe, Run, check_dataset, known_domain, open_dataset
 from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
@@ -62,33 +62,58 @@ log = logging.getLogger(__name__)
 def parts_of(store: Store, run: Run) -> Split:
     """Parts of the run's own dataset; for another dataset, the frames of all that is new to the run.
 
-    That is shapes, by name, or, for a run that was split by site, contact points: those of its training and
-    validation parts are not new. InputError if none is.
+    That is inclusions in their blocks or, for a run that was split by site, contact points on these: those of
+    its training and validation parts are not new. Where its dataset cannot be read any more (`trained_on`),
+    shapes are told by their names. InputError if nothing is new.
     """
     if store.uuid == run.uuid:
         return split_of_run(store, run)
-    used = store.done & (store.frame_count > 0)
+    by_shape, own, pokes = run.recipe.split == "shape", trained_on(run), np.arange(store.pokes)
     names = np.array(store.shapes)[store.shape]
-    if run.recipe.split == "shape":
-        test = used & ~np.isin(names, run.groups["train"] + run.groups["validation"])
+    if own is not None:
+        data, rows = own
+        key = interiors if by_shape else _points
+        new = ~np.isin(key(store, pokes), key(data, np.unique(data.frame_poke[rows])))
+    elif by_shape:
+        new = ~np.isin(names, run.groups["train"] + run.groups["validation"])
     elif run.seen:
-        test = used & ~np.isin(contact_points(store, np.arange(store.pokes)), list(run.seen))
+        new = ~np.isin(contact_points(store, pokes), list(run.seen))
     else:
         raise InputError(
             f"{run.folder}: it was split by site, and does not say which contact points it was trained on"
             f" (version of before 2026-11-27), so that none of {store.location} is known to be new: train it"
             " again"
         )
+    used = store.done & (store.frame_count > 0)
+    test = used & new
     if not test.any():
-        known = ", ".join(sorted(set(names[used].tolist())))
+        shapes = ", ".join(sorted(set(names[used].tolist())))
         raise InputError(
-            f"{store.location}: {run.folder} was trained on all its {run.recipe.split}s (shapes {known}),"
+            f"{store.location}: {run.folder} was trained on all its {run.recipe.split}s (shapes {shapes}),"
             " expected one that it has not seen"
         )
     none = np.zeros(0, dtype=np.int64)
     rows = np.flatnonzero(test[store.frame_poke] & store.presses)
     groups = {"train": [], "validation": [], "test": sorted(set(names[test].tolist()))}
     return Split(train=none, validation=none, test=rows, groups=groups)
+
+
+def trained_on(run: Run) -> tuple[Store, NDArray[np.int64]] | None:
+    """The run's own dataset and the frames of its training and validation parts; None if it is not there."""
+    try:
+        data = open_dataset(run, verify=False)
+        check_dataset(run.uuid, run.folder, data)
+        split = split_of_run(data, run)
+    except InputError:
+        return None
+    return data, np.concatenate([split.train, split.validation])
+
+
+def _points(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
+    """A key of the interior, first contact and direction of each poke (k,)."""
+    place = np.column_stack([store.path_start, store.direction])[pokes].round(9) + 0.0
+    texts = [" ".join(f"{v:.9f}" for v in row) for row in place]
+    return np.array([f"{key} {text}" for key, text in zip(interiors(store, pokes), texts, strict=True)])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,6 +142,8 @@ class Evaluation:
     covered, across : coverage of intervals from the run's own validation part, and from the other folds.
     no_intervals : reason why a run has no intervals, by run.
     intervals : intervals of each run (or ensemble), from the other folds if there are enough.
+    by_name : folders of runs on another dataset, whose own is not where it was, so that shapes were told by
+        their names.
     clouds : metrics by point cloud; interpolation_mm: error of their interpolated truth [mm].
     depths, covers : metrics by model and band of depth, and of cover over the inclusion below the contact;
         one entry per fold.
@@ -137,6 +164,7 @@ class Evaluation:
     covered: dict[str, Covered] = field(default_factory=dict)
     across: dict[str, Covered] = field(default_factory=dict)
     no_intervals: dict[str, str] = field(default_factory=dict)
+    by_name: list[str] = field(default_factory=list)
     intervals: list[tuple[Run, Intervals]] = field(default_factory=list)
     clouds: dict[str, Row] = field(default_factory=dict)
     interpolation_mm: float = float("nan")
@@ -222,6 +250,7 @@ def evaluate(
             baseline = kind()
             baseline.fit(train, here)
             found.folds.setdefault(title, []).append(by_softness(predict_part(baseline, here, test)))
+    found.by_name = [str(r.folder) for r in runs if r.uuid != store.uuid and trained_on(r) is None]
     found.frames, found.pokes = int(tested.sum()), len(np.unique(store.frame_poke[tested]))
     own = [p for p in predicted if p.run.uuid == store.uuid]
     for one, intervals in across_folds(own, copies=store.copies):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
 import hashlib
 import importlib
 import io
@@ -242,12 +243,26 @@ def known_domain(run: Run, store: Store) -> Domain | None:
 
 
 class Log:
-    """Log of a run, RUN/log.jsonl. On resuming, lines of epochs to be trained again are dropped."""
+    """Log of a run, RUN/log.jsonl. On resuming, lines of epochs to be trained again are dropped.
+
+    While it is open, no other process can open it: two trainings would overwrite each other's checkpoints.
+    InputError if another one has it, or has trained here since `epochs_done` was read.
+    """
 
     def __init__(self, folder: Path, *, epochs_done: int) -> None:
-        self._path = folder / LOG
-        kept = [line for line in read_log(folder) if line["epoch"] < epochs_done]
-        write_whole(self._path, "".join(json.dumps(line) + "\n" for line in kept).encode())
+        self._path, self._lock = folder / LOG, _locked(folder)
+        try:
+            last = folder / LAST
+            if (load_checkpoint(last)["epoch"] if last.is_file() else 0) != epochs_done:
+                raise InputError(
+                    f"{last}: another training has written it in the meantime: --resume goes on, or choose"
+                    " another --out"
+                )
+            kept = [line for line in read_log(folder) if line["epoch"] < epochs_done]
+            write_whole(self._path, "".join(json.dumps(line) + "\n" for line in kept).encode())
+        except BaseException:
+            os.close(self._lock)
+            raise
         try:
             module = importlib.import_module("tensorboardX")
         except ImportError:
@@ -265,10 +280,22 @@ class Log:
                     self._board.add_scalar(key, value, line["epoch"])
 
     def close(self) -> None:
-        """Flush and close TensorBoard."""
+        """Flush and close TensorBoard, and let others train here."""
+        os.close(self._lock)
         if self._board is not None:
             with contextlib.suppress(OSError):  # a full disk was reported already
                 self._board.close()
+
+
+def _locked(folder: Path) -> int:
+    """A lock on the folder, which ends with the process or when it is closed."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise InputError(f"{folder}: another training is at work in it: choose another --out") from None
+    return handle
 
 
 def read_log(folder: Path) -> list[dict[str, Any]]:

@@ -152,6 +152,28 @@ def test_a_missing_chunk_is_not_read_as_zeros(name: str, store: Path) -> None:
     assert run_app(verify_app, store).exit_code == 1
 
 
+@pytest.mark.parametrize("name", ["mesh_nodes", "rod_force", "site"])
+def test_another_value_in_a_table_is_named(name: str, store: Path) -> None:
+    """It decodes without an error, and would be shown as it is."""
+    array: Any = zarr.open_group(store=store, mode="r+")[name]
+    array[...] = array[...] * 2
+    for arguments in ((), ("--poke", "1")):
+        shown = run_app(inspect_app, store, *arguments)
+        assert shown.exit_code == 2, shown.output
+        assert shown.stderr == f"error: {_shard(store, name)}: its sha256 differs from the manifest\n"
+
+
+@pytest.mark.parametrize("content", [None, "[1]"])
+def test_tables_that_no_manifest_vouches_for_are_not_shown(content: str | None, store: Path) -> None:
+    if content is None:
+        (store / MANIFEST).unlink()
+    else:
+        (store / MANIFEST).write_text(content)
+    shown = run_app(inspect_app, store)
+    assert shown.exit_code == 2
+    assert f"{store / MANIFEST}: missing or damaged" in shown.stderr
+
+
 def _edited(name: str, change: Callable[[Any], Any]) -> Callable[[Path], None]:
     def edit(store: Path) -> None:
         array: Any = zarr.open_group(store=store, mode="r+")[name]

@@ -8,12 +8,16 @@ from pathlib import Path
 
 import pytest
 
+from factory import _report
 from factory._build import BuildProgress, build_dataset
+from factory._cli import make_console
 from factory._errors import InputError
 from factory._staging import Staging, building_folder
+from factory._summary import summarise
+from factory.inspect import app as inspect_app
 from factory.plan import Plan, make_plan
 from factory.recipe import load_recipe
-from tests.factory.conftest import TINY, Builder, digest
+from tests.factory.conftest import TINY, Builder, digest, run_app
 
 
 @pytest.fixture
@@ -82,8 +86,39 @@ def test_overwrite_keeps_the_old_store_until_the_new_one_is_whole(
     with pytest.raises(KeyboardInterrupt):
         standin_build(other, target, overwrite=True, on_progress=stop)
     assert digest(target) == before
+    left = summarise(target)
+    assert (left.recipe, len(left.done)) == (plan.recipe.name, 4)
+    assert f"recipe {other.recipe.name}, {other.model}, 2 of 4 pokes so far" in left.replacement
+    assert left.replacement in " ".join(run_app(inspect_app, target).output.split())
+    with pytest.raises(InputError, match="was begun with another plan"):
+        standin_build(plan, target)
     assert standin_build(other, target).simulated == 2  # resumes without --overwrite
     assert digest(target) == digest(reference)
+    assert not summarise(target).replacement
+
+
+def test_a_preview_is_of_the_store_beside_it(
+    plan: Plan, other: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While a whole store is to be replaced, its preview stays."""
+    monkeypatch.setattr(_report, "_PICTURE_SECONDS", -1.0)
+    target, shown = tmp_path / "a.zarr", b""
+    seen: set[bytes] = set()
+    for one, overwrite in ((plan, False), (other, True)):
+        screen = _report.Screen(
+            one, target, make_console(), _report.estimate(one, target, 1, overwrite=overwrite)
+        )
+
+        def watch(state: BuildProgress, screen: _report.Screen = screen) -> None:
+            screen.update(state)
+            seen.add(_report.preview_path(target).read_bytes())
+
+        built = standin_build(one, target, overwrite=overwrite, on_progress=watch)
+        if overwrite:
+            assert seen == {shown}
+        screen.finish(built)
+        shown = _report.preview_path(target).read_bytes()
+        seen.clear()
 
 
 def test_failed_pokes_do_not_replace_a_complete_store(

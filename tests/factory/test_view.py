@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,25 @@ def test_a_poke_that_cannot_be_read_is_one_sentence(finished_store: Path, tmp_pa
     content[40:120] = bytes(80)
     chunk.write_bytes(bytes(content))
     with pytest.raises(ValueError, match=r"damaged\.zarr: poke 0 cannot be read \("):
+        view_of_file(store)
+
+
+def test_a_missing_file_is_not_shown_as_zeros(finished_store: Path, tmp_path: Path) -> None:
+    store = tmp_path / "damaged.zarr"
+    shutil.copytree(finished_store, store)
+    lost = next(p for p in sorted((store / "surface_displacement" / "c").rglob("*")) if p.is_file())
+    lost.unlink()
+    words = rf"damaged\.zarr: {lost.relative_to(store)} is missing, which its manifest lists"
+    with pytest.raises(ValueError, match=words):
+        view_of_file(store)
+    zipped = tmp_path / "damaged.zarr.zip"
+    with zipfile.ZipFile(zipped, "w") as archive:
+        for file in sorted(p for p in store.rglob("*") if p.is_file()):
+            archive.write(file, file.relative_to(store))
+    with pytest.raises(ValueError, match=words.replace("zarr:", "zarr\\.zip:")):
+        view_of_file(zipped)
+    (store / "provenance" / "manifest.json").write_text("{")
+    with pytest.raises(ValueError, match=r"damaged\.zarr: provenance/manifest\.json cannot be read \("):
         view_of_file(store)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+import zarr
 from typer.testing import CliRunner, Result
 
 import learn.baselines
@@ -17,12 +18,12 @@ import learn.evaluate
 import learn.export
 import learn.predict
 import learn.train
-from learn.data import MemoryDataset, contact_points, open_store, split_of, split_pokes
+from learn.data import MemoryDataset, Store, contact_points, open_store, split_of, split_pokes
 from learn.data.clouds import scattered
 from learn.errors import InputError
 from learn.evaluation import ensembles, evaluate, join_runs, parts_of, summarise
 from learn.evaluation.predictions import interpolation_error_mm, predict_on
-from learn.evaluation.report import tables
+from learn.evaluation.report import cautions, tables
 from learn.metrics import METRICS
 from learn.models import Ensemble, Model, Pokes, Response, Scene, pokes_of, scene_on
 from learn.scene_file import load_poke, scene_and_poke
@@ -364,7 +365,7 @@ def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
 
 def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
     """Transfer tests all pokes of shapes unseen by the run, no others, and keeps the run's intervals."""
-    other = write_store(tmp_path / "o.zarr", seed=4, shapes=5, sites=1, frames=2)
+    other = write_store(tmp_path / "o.zarr", shapes=5, sites=2, frames=2)
     flags = ("--transfer", "--no-clouds", "--threads", 1)
     own = _call(
         learn.evaluate.app, run, "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "own"
@@ -385,8 +386,9 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     tables = json.loads((tmp_path / "out" / "tables.json").read_text())
     assert list(tables["tables"]) == ["invariant-gnn"]
     assert list(tables["intervals"]) == ["invariant-gnn, fold 0"]
-    # the training part has one interior
-    assert list(tables["outside"]) == ["invariant-gnn, fold 0, 0.3 to 1", "invariant-gnn, fold 0, beyond 1"]
+    # the training part has one interior, and not the smaller nor the larger ones
+    assert all(name.startswith("invariant-gnn, fold 0, ") for name in tables["outside"])
+    assert "invariant-gnn, fold 0, beyond 1" in tables["outside"]
     frames = sum(one["frames"] for one in tables["outside"].values())
     assert frames == tables["test_frames"]
     assert "Outside what was trained" in (tmp_path / "out" / "report.html").read_text()
@@ -397,7 +399,30 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     few = write_store(tmp_path / "few.zarr", seed=5, shapes=3)
     everything = replace(loaded, groups={**loaded.groups, "train": ["shape-0", "shape-1", "shape-2"]})
     with pytest.raises(InputError, match="trained on all its shapes"):
-        parts_of(open_store(few), everything)
+        parts_of(open_store(few), replace(everything, location=str(tmp_path / "gone.zarr")))
+
+
+def _renamed(folder: Path) -> Store:
+    """The dataset with other names of its shapes, as another recipe may give them."""
+    zarr.open_group(folder, mode="r+").attrs.update(uuid="renamed", shapes=["round-1", "round-2", "round-3"])
+    return open_store(folder)
+
+
+def test_shapes_of_another_dataset_are_told_by_what_they_are(run: Path, store: Path, tmp_path: Path) -> None:
+    """Drawn shapes of one name differ, and one shape has different names; by name where the rest is gone."""
+    loaded, own = load_run(run), open_store(store)
+    trained = {*loaded.groups["train"], *loaded.groups["validation"]}
+    renamed = _renamed(write_store(tmp_path / "twin.zarr", sites=2, frames=3))
+    parts = parts_of(renamed, loaded)
+    assert parts.groups["test"] == [renamed.shapes[own.shapes.index(n)] for n in loaded.groups["test"]]
+    drawn = open_store(write_store(tmp_path / "drawn.zarr", seed=7))
+    assert set(parts_of(drawn, loaded).groups["test"]) == set(drawn.shapes) > trained
+    away = replace(loaded, location=str(tmp_path / "gone.zarr"))
+    assert set(parts_of(drawn, away).groups["test"]) == set(loaded.groups["test"])
+    found = evaluate([away], drawn, baselines=False, clouds=False)
+    assert found.by_name == [str(run)]
+    assert any("told by their names" in sentence for sentence in cautions(found))
+    assert not evaluate([loaded], drawn, baselines=False, clouds=False).by_name
 
 
 def test_a_run_split_by_site_is_tested_elsewhere_on_contact_points_that_it_has_not_seen(
@@ -414,6 +439,11 @@ def test_a_run_split_by_site_is_tested_elsewhere_on_contact_points_that_it_has_n
         groups=split.groups,
         seen=frozenset(contact_points(store, trained).tolist()),
     )
+    # told by interior and place where its own dataset is there, else by the keys that it was saved with
+    there = replace(by_site, uuid=store.uuid, location=store.address)
+    other = _renamed(write_store(tmp_path / "b.zarr", sites=2))
+    found = np.unique(other.frame_poke[parts_of(other, there).test])
+    np.testing.assert_array_equal(found, np.unique(store.frame_poke[split.test]))
     by_site = replace(by_site, uuid="of another law")
     tested = np.unique(store.frame_poke[parts_of(store, by_site).test])
     np.testing.assert_array_equal(tested, np.unique(store.frame_poke[split.test]))

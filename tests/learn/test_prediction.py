@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import learn
 import learn.predict
 from learn.data import open_store, split_of
 from learn.errors import InputError, OutsideDomainError
+from learn.evaluation.intervals import Intervals
 from learn.predictor import Predictor
 from learn.training import load_run
 from learn.training.run_folder import load_checkpoint, save_checkpoint
@@ -276,6 +278,35 @@ def test_the_python_interface(run: Path, predictor: Predictor, tmp_path: Path) -
     assert "data:image/png;base64" in answer._repr_html_()
     with pytest.raises(InputError, match="trained on dataset"):
         learn.load(run, dataset=write_store(tmp_path / "o.zarr", seed=4, frames=1))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_force_that_is_not_above_0_has_no_interval(
+    run: Path, sign: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its interval is a factor around it: around a negative force its ends would be swapped."""
+    predictor = learn.load(run)
+    predictor.__dict__["intervals"] = Intervals(
+        level=0.9, promised=0.9, pokes=9, scale=[0.0] * 9, factors=[1.0] * 20, force_scale=0.1, force=1.0
+    )
+    plain = predictor.run.model.forward
+    monkeypatch.setattr(
+        predictor.run.model,
+        "forward",
+        lambda scene, pokes: replace(found := plain(scene, pokes), force=sign * found.force.abs()),
+    )
+    answer = predictor.predict({"site_mm": [5, -10], "depth_mm": 2, "shape": "shape-1", "softness": "S1"})
+    assert answer.radius is not None
+    said = answer.as_dict()
+    assert "radius_mean_mm" in said
+    if sign > 0:
+        low, high = answer.force_interval or (0.0, 0.0)
+        assert (said["force_low_N"], said["force_high_N"]) == (low, high)
+        assert 0.0 < low < answer.force < high
+    else:
+        assert answer.force_interval is None
+        assert "force_low_N" not in said
+        assert "(no interval: it is 0 N or less)" in repr(answer)
 
 
 def test_an_ensemble_is_of_runs_that_differ_in_seed_alone(run: Path, tmp_path: Path) -> None:

@@ -89,9 +89,13 @@ def test_memory_is_bounded_by_the_pool(store: Store, monkeypatch: pytest.MonkeyP
     assert most * 1024 * 12 <= data.bytes_held < store.frames * 1024 * 12
 
 
-def test_memory_is_bounded_where_a_part_takes_some_frames_of_a_shard(tmp_path: Path) -> None:
-    """Every second frame takes what all take, and some batches and chunks: no copy of a shard."""
-    store = open_store(write_store(tmp_path / "s.zarr", frames=16, chunk=4, shard=96))
+@pytest.mark.parametrize("scheme", ["", "file://"])
+def test_memory_is_bounded_where_a_part_takes_some_frames_of_a_shard(scheme: str, tmp_path: Path) -> None:
+    """Every second frame takes what all take, and some batches and chunks: no copy of a shard, at a URL its
+    compressed bytes."""
+    folder = write_store(tmp_path / "s.zarr", frames=16, chunk=4, shard=96)
+    store = open_store(f"{scheme}{folder}")
+    compressed = max(p.stat().st_size for p in (folder / "grid_displacement" / "c").rglob("*") if p.is_file())
     rows = np.arange(0, store.frames, 2)
     data = StreamDataset(store, rows, batch=4, shuffle_buffer=1, seed=1)
     tracemalloc.start()
@@ -101,7 +105,7 @@ def test_memory_is_bounded_where_a_part_takes_some_frames_of_a_shard(tmp_path: P
     finally:
         tracemalloc.stop()
     assert seen == rows.tolist()
-    assert most < data.bytes_held + 24 * 1024 * 12
+    assert most < data.bytes_held + 24 * 1024 * 12 + (compressed if scheme else 0)
 
 
 @pytest.mark.parametrize("workers", [0, 2])
@@ -182,6 +186,18 @@ def test_over_http_the_same_as_from_a_folder(server: str, store: Store) -> None:
     near = list(StreamDataset(store, rows, batch=8, seed=5))
     for a, b in zip(StreamDataset(far, rows, batch=8, seed=5), near, strict=True):
         np.testing.assert_array_equal(a.displacement, b.displacement)
+
+
+def test_over_http_a_damaged_index_of_a_shard_is_named(server: str, folder: Path) -> None:
+    far = open_store(f"{server}/small.zarr")
+    shard = next(p for p in (folder / "grid_displacement" / "c").rglob("*") if p.is_file())
+    kept = shard.read_bytes()
+    shard.write_bytes(kept[:-9] + bytes([kept[-9] ^ 1]) + kept[-8:])
+    try:
+        with pytest.raises(InputError, match=r"cannot be read \(the checksum of a shard's index"):
+            far.displacement(slice(0, far.frames))
+    finally:
+        shard.write_bytes(kept)
 
 
 def test_over_http_what_is_missing_is_named(server: str, folder: Path) -> None:

@@ -170,6 +170,30 @@ def test_a_runaway_loss_ends_the_run(folder: Path, tmp_path: Path) -> None:
         _train(folder, recipe, tmp_path / "run")
 
 
+def test_of_two_trainings_in_one_folder_one_is_refused(folder: Path, tmp_path: Path) -> None:
+    """Both began when the folder was new: the second may not write while the first does, nor after it."""
+    one = TINY.model_copy(update={"epochs": 1})
+    refused: list[str] = []
+
+    def second(progress: Progress) -> None:
+        if not refused and progress.values is None:
+            with pytest.raises(InputError) as error:
+                late[0].train()
+            refused.append(str(error.value))
+
+    first = Trainer(open_store(folder), one, tmp_path / "run", on_progress=second)
+    late = [Trainer(open_store(folder), one.model_copy(update={"seed": k}), tmp_path / "run") for k in (1, 2)]
+    first.train()
+    assert refused == [f"{tmp_path / 'run'}: another training is at work in it: choose another --out"]
+    with pytest.raises(InputError, match=r"last\.pt: another training has written it in the meantime"):
+        late[1].train()
+    assert load_run(tmp_path / "run").recipe.seed == one.seed
+    assert [line["epoch"] for line in read_log(tmp_path / "run")] == [0]
+    (tmp_path / "run" / "last.pt").unlink()
+    (tmp_path / "run" / "best.pt").unlink()
+    _train(folder, one, tmp_path / "run")  # the refused ones hold no lock
+
+
 def test_what_is_there_is_not_overwritten(folder: Path, tmp_path: Path) -> None:
     one = TINY.model_copy(update={"epochs": 1})
     _train(folder, one, tmp_path / "run")

@@ -143,6 +143,20 @@ def test_a_bad_mesh_is_refused_before_anything_is_solved() -> None:
         tisim.simulate(tisim.Beam(material=SOFT, mesh=two, length=0.06), workers=1)
 
 
+def test_a_facet_that_is_given_twice_is_refused() -> None:
+    """Its share of a tip force, of a tip mass and of contact would count twice."""
+    mesh = bar()
+    tip = mesh.facet_sets["tip"]
+    again = replace(mesh, facet_sets={**mesh.facet_sets, "tip": np.concatenate([tip, tip[:1, [1, 2, 3, 0]]])})
+    words = r"Beam\.mesh: expected a facet set 'tip' with each facet once, got '1 given again'"
+    with pytest.raises(ValueError, match=words):
+        tisim.simulate(tisim.Beam(material=SOFT, mesh=again, tip_force=(0.0, 0.0, -0.01)))
+    top = slab()
+    twice = np.concatenate([top.facet_sets["top"]] * 2)
+    with pytest.raises(ValueError, match=r"Poke\.mesh: expected a facet set 'top' with each facet once"):
+        poke(replace(top, facet_sets={**top.facet_sets, "top": twice}))
+
+
 def test_sets_may_be_lists_and_masks() -> None:
     mesh = bar()
     mask = mesh.nodes[:, 0] < 1e-9

@@ -171,6 +171,10 @@ def test_units_have_prefixes_that_suit(shown: View) -> None:
         (["beam.vtu", "--gif", "x.gif", "--colour", "mood"], "expected one of displacement, von Mises"),
         (["beam.vtu", "--gif", "x.gif", "--width", "7"], "width of 200 to 2000"),
         (["beam.vtu", "--out", "nofolder/x.html"], "expected a folder that exists"),
+        (["beam.vtu", "--out", "beam.vtu"], "--out beam.vtu: expected a name that ends in .html"),
+        (["beam.vtu", "--gif", "name.v2"], "--gif name.v2: expected a name that ends in .gif"),
+        (["beam.vtu", "--gif", "."], "--gif .: expected a name that ends in .gif"),
+        (["beam.vtu", "--mp4", "film.gif"], "--mp4 film.gif: expected a name that ends in .mp4"),
         (["beam.vtu", "poke/poke-001.vtu"], "expected the elements of"),
     ],
 )

@@ -152,6 +152,11 @@ def check_mesh(mesh: Mesh | None, *, node_sets: tuple[str, ...], facet_sets: tup
         for name in wanted:
             if name not in there or not len(there[name]):
                 raise FieldError("mesh", f"a {what} set {name!r} that is not empty", sorted(there))
+    for name in facet_sets:
+        facets = mesh.facet_sets[name]
+        again = len(facets) - len(np.unique(np.sort(facets, axis=1), axis=0))
+        if again:  # its load and its contact would count twice
+            raise FieldError("mesh", f"a facet set {name!r} with each facet once", f"{again} given again")
     if not mesh.n_elements:
         raise FieldError("mesh", "at least one element", 0)
     _check_elements(mesh, node_sets)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from tisim.view._quantities import Quantity, curve, frames_shown, label, thinned
 from tisim.view._result import rod, towards
 from tisim.view._view import REST, Field, Surface, View
 
+_MANIFEST = "provenance/manifest.json"
 _NEEDED = (
     *("done", "frame_start", "frame_count", "node_start", "triangle_start", "value_start"),
     *("rod_tip", "surface_displacement"),
@@ -34,6 +36,9 @@ def view_of_poke(path: Path, index: int | None) -> View:
         raise ValueError(f"{path}: expected the store of a dataset (Zarr 3) ({said})") from None
     if missing:
         raise ValueError(f"{path}: expected the store of a dataset, it has no {', '.join(missing)}")
+    lost = _lost(path)
+    if lost:  # Zarr would read it as zeros: a body that does not move
+        raise ValueError(f"{path}: {lost[0]} is missing, which its manifest lists")
     done = np.flatnonzero(store["done"][:] & (store["frame_count"][:] > 0))
     if index is None and len(done):
         index = int(done[0])
@@ -47,6 +52,20 @@ def view_of_poke(path: Path, index: int | None) -> View:
     except Exception as error:  # of any layer below: codec, zip, shapes, attributes
         said = " ".join(str(error).split())[:120]
         raise ValueError(f"{path}: poke {index} cannot be read ({type(error).__name__}: {said})") from None
+
+
+def _lost(path: Path) -> list[str]:
+    """Files of a store's manifest that it lacks; none without one, as other programs may write it."""
+    try:
+        root: Any = path if path.is_dir() else zipfile.Path(path)
+        if not (root / _MANIFEST).is_file():
+            return []
+        listed = json.loads((root / _MANIFEST).read_text(encoding="utf-8"))["sha256"]
+        there = None if path.is_dir() else set(root.root.namelist())
+        return [n for n in listed if not ((path / n).is_file() if there is None else n in there)]
+    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
+        said = " ".join(str(error).split())[:120]
+        raise ValueError(f"{path}: {_MANIFEST} cannot be read ({type(error).__name__}: {said})") from None
 
 
 def _view(path: Path, store: Any, index: int) -> View:

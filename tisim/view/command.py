@@ -70,10 +70,14 @@ def main(
     from tisim.view import view_of_file
 
     try:
+        # before the files are read, and never by a change of the name: name.v2 is not name.gif
+        for option, path, ending in (("--out", out, ".html"), ("--gif", gif, ".gif"), ("--mp4", mp4, ".mp4")):
+            if path is not None and path.suffix.lower() != ending:
+                raise ValueError(f"{option} {path}: expected a name that ends in {ending}")
         view = view_of_file(*files, poke=poke)
         written = [
-            view.animate(path.with_suffix(ending), colour=colour, seconds=seconds, width=width)
-            for path, ending in ((gif, ".gif"), (mp4, ".mp4"))
+            view.animate(path, colour=colour, seconds=seconds, width=width)
+            for path in (gif, mp4)
             if path is not None
         ]
         if out is not None or show or not written:
