@@ -39,8 +39,9 @@ class Predictions:
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
     shape : name of the inclusion's shape, shape (f,); "" if it is not known.
-    interior : size of the inclusion (cube root of its volume), and cover over it where the rod's axis meets
-        the surface [mm], shape (f, 2); 0 if they are not known.
+    cover : cover over the inclusion where the rod's axis meets the surface [mm], shape (f,); 0 if not known.
+    size_gap : size of the inclusion (cube root of its volume), and distance from the indenter's tip to what
+        is rigid (`learn.validity.gap_mm`) [mm], shape (f, 2); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     clock : time since contact and the rod's speeds of each frame, as in `learn.models.Pokes`, shape (f, 3);
@@ -56,7 +57,8 @@ class Predictions:
     poke: NDArray[np.int64]
     softness: NDArray[np.str_]
     shape: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype=np.str_))
-    interior: Floats = field(default_factory=lambda: np.zeros(0))
+    cover: Floats = field(default_factory=lambda: np.zeros(0))
+    size_gap: Floats = field(default_factory=lambda: np.zeros(0))
     spread: Floats = field(default_factory=lambda: np.zeros(0))
     force_spread: Floats = field(default_factory=lambda: np.zeros(0))
     clock: Floats = field(default_factory=lambda: np.zeros(0))
@@ -66,8 +68,10 @@ class Predictions:
             object.__setattr__(self, "spread", np.zeros(self.away.shape))
         if not self.shape.size:
             object.__setattr__(self, "shape", np.full(self.depth.shape, ""))
-        if not self.interior.size:
-            object.__setattr__(self, "interior", np.zeros((*self.depth.shape, 2)))
+        if not self.cover.size:
+            object.__setattr__(self, "cover", np.zeros(self.depth.shape))
+        if not self.size_gap.size:
+            object.__setattr__(self, "size_gap", np.zeros((*self.depth.shape, 2)))
         if not self.force_spread.size:
             object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
         if not self.clock.size:

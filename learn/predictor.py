@@ -33,7 +33,7 @@ from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, check_dataset, known_domain, load_run, open_dataset
 from learn.training.run_folder import write_whole
-from learn.validity import Check, Domain, poke_values, unknown_checks
+from learn.validity import Check, Domain, gap_mm, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
 
@@ -236,11 +236,12 @@ class Predictor:
     def _answer(self, poke: PokeScene, given: PokeInput, response: Response) -> PokePrediction:
         setup, interior, scene, pokes = given
         u, force = response.displacement.numpy(), float(response.force[0])
+        start, direction = pokes.start[0].numpy(), pokes.direction[0].numpy()
         values = poke_values(
             setup,
             interior,
-            start=pokes.start[0].numpy(),
-            direction=pokes.direction[0].numpy(),
+            start=start,
+            direction=direction,
             depth=float(pokes.depth[0]),
             modulus=float(pokes.modulus[0]),
             clock=pokes.clock[0].numpy(),
@@ -248,9 +249,8 @@ class Predictor:
         asked = values, kind_of(poke, self.store), poke.law
         distance = self.domain.distance(values, poke.law) if self.domain else 0.0
         away = np.linalg.norm(setup.points - pokes.start.numpy(), axis=1)
-        radius, factor = self._interval(
-            response, away, float(pokes.depth[0]), (interior.size, values["cover_mm"]), distance
-        )
+        gap = gap_mm(setup, interior, start + float(pokes.depth[0]) * direction)
+        radius, factor = self._interval(response, away, float(pokes.depth[0]), (interior.size, gap), distance)
         return PokePrediction(
             poke=poke,
             points=setup.points,
@@ -268,13 +268,13 @@ class Predictor:
         response: Response,
         away: Floats,
         depth: float,
-        interior: tuple[float, float],
+        size_gap: tuple[float, float],
         distance: float,
     ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
             return None, None
-        intervals = self.intervals.over(*interior)
+        intervals = self.intervals.over(*size_gap)
         radius = intervals.radius_at_mm(
             np.linalg.norm(response.displacement[0].numpy(), axis=1),
             away=away,

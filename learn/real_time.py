@@ -24,7 +24,7 @@ from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
 from learn.scene_file import kind_of, load_poke, scene_and_poke
-from learn.validity import cover_at, poke_values
+from learn.validity import cover_at, gap_mm, poke_values
 
 if TYPE_CHECKING:
     from learn.evaluation import Intervals
@@ -178,7 +178,8 @@ class RealTime:
             distance = 0.0  # nothing moves, whatever was trained
         away, interval, intervals = None, None, None
         if self._intervals is not None and depth > 0.0:
-            intervals = self._intervals.over(self._interior.size, values["cover_mm"])
+            gap = gap_mm(self._setup, self._interior, start + depth * push)
+            intervals = self._intervals.over(self._interior.size, gap)
             away = from_contact
             factor = math.exp(intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
             interval = (force / factor, force * factor)

@@ -297,6 +297,9 @@ def frame_distances(
     return found
 
 
+NEAR = 16e-3  # m; largest gap to what is rigid that errors depend on (studies/learning/gap.md)
+
+
 class Interior(NamedTuple):
     """Quantities of an interior on which those of a poke depend.
 
@@ -322,11 +325,15 @@ def interior_of(setup: Setup, profile: NDArray[np.uint8]) -> Interior:
     return Interior(soft, 2e3 * math.sqrt(area / math.pi), tall, 1e3 * math.cbrt(volume))
 
 
-def interior_at(store: Store, poke: int) -> tuple[float, float]:
-    """Size of the inclusion of one stored poke, and the cover over it [mm]."""
-    setup = store.setup_of(poke)
-    interior = interior_of(setup, store.profile[int(store.geometry[poke])])
-    return interior.size, 1e3 * cover_at(setup, interior, store.path_start[poke], store.direction[poke])
+def gap_mm(setup: Setup, interior: Interior, tip: Floats) -> float:
+    """Distance from the indenter's tip (3,) [m] to what is rigid, at most `NEAR` [mm].
+
+    Rigid is what lies below the soft tissue of each column, the base of the block as well.
+    """
+    x, y, z = setup.points.T
+    below = np.maximum(tip[2] - (z - interior.soft), 0.0)
+    square = (x - tip[0]) ** 2 + (y - tip[1]) ** 2 + below * below
+    return 1e3 * min(NEAR, math.sqrt(float(square.min())))
 
 
 def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:

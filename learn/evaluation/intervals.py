@@ -12,9 +12,10 @@ CDFs). Fewer than 9 pokes cannot guarantee 90 %: the largest score is then used,
 guaranteed coverage. New shapes are not exchangeable with trained ones, so that the coverage is measured,
 never presumed.
 
-Errors are larger over large inclusions and under thin cover. The fitted errors therefore have a factor
-e^(b V^(1/3) + c h): V is the inclusion's volume, h the cover where the rod's axis meets the surface. With
-respect to new shapes each shape is one draw: b and c are fitted to five shapes or more.
+Errors are larger over large inclusions, and where the indenter comes near what is rigid. The fitted errors
+therefore have a factor e^(b V^(1/3) + c g): V is the inclusion's volume, g the distance from the indenter's
+tip to what is rigid (`learn.validity.gap_mm`). With respect to new shapes each shape is one draw: b and c are
+fitted to five shapes or more.
 
 A run is validated on two shapes, too few to predict the error on a third. The test parts of the other folds
 are each predicted by a model that was not trained on their shapes, so that they are further draws of the
@@ -43,8 +44,8 @@ LEVEL = 0.9
 LEAST_POKES = 2
 PARTS = 5  # cross-validation folds of the pokes; the error scale of each is fitted to the others
 LEAST_FOLDS = 3
-N_FEATURES = 9  # of `_Scale.fit`, without those of the interior
-LEAST_SHAPES = 5  # for a fit of how errors depend on the inclusion and its cover
+N_FEATURES = 9  # of `_Scale.fit`, without those of the inclusion
+LEAST_SHAPES = 5  # for a fit of how errors depend on the inclusion and the gap to it
 # Outside the trained ranges: LENGTH, in widths of these, is the length scale of the widening; far outside, a
 # force is known to a factor of e^FORCE_UNKNOWN = 4, which holds nine tenths of the forces on thin covers, the
 # worst case of studies/learning/outside.
@@ -63,8 +64,8 @@ class Intervals:
     scale : coefficients of ln(fitted error / mm).
     factors : factors on the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
-    interior, force_interior : change of the logarithms of both fitted errors per mm of the inclusion's size
-        (`learn.validity.Interior.size`) and of its cover; 0 if there are few shapes.
+    size_gap, force_size_gap : change of the logarithms of both fitted errors per mm of the inclusion's size
+        (`learn.validity.Interior.size`) and of the gap to what is rigid; 0 if there are few shapes.
     """
 
     level: float
@@ -74,19 +75,19 @@ class Intervals:
     factors: list[float]
     force_scale: float
     force: float
-    interior: tuple[float, float] = (0.0, 0.0)
-    force_interior: tuple[float, float] = (0.0, 0.0)
+    size_gap: tuple[float, float] = (0.0, 0.0)
+    force_size_gap: tuple[float, float] = (0.0, 0.0)
 
-    def over(self, size: float, cover: float) -> Intervals:
-        """Intervals over an inclusion of this size and cover [mm]; they no longer depend on these."""
-        more = self.interior[0] * size + self.interior[1] * cover
-        force_more = self.force_interior[0] * size + self.force_interior[1] * cover
+    def over(self, size: float, gap: float) -> Intervals:
+        """Intervals over an inclusion of this size, this near to it [mm]; they no longer depend on these."""
+        more = self.size_gap[0] * size + self.size_gap[1] * gap
+        force_more = self.force_size_gap[0] * size + self.force_size_gap[1] * gap
         return replace(
             self,
             scale=[self.scale[0] + more, *self.scale[1:]],
             force_scale=self.force_scale * math.exp(force_more),
-            interior=(0.0, 0.0),
-            force_interior=(0.0, 0.0),
+            size_gap=(0.0, 0.0),
+            force_size_gap=(0.0, 0.0),
         )
 
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
@@ -100,7 +101,7 @@ class Intervals:
             away=predictions.away,
             depth=predictions.depth[:, None],
             spread=predictions.spread,
-            interior=predictions.interior[:, None],
+            size_gap=predictions.size_gap[:, None],
             distance=np.asarray(distance)[..., None],
         )
 
@@ -111,13 +112,13 @@ class Intervals:
         away: Floats,
         depth: float | Floats,
         spread: float | Floats = 0.0,
-        interior: Floats | None = None,
+        size_gap: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """Radius [mm] from the magnitude of the predicted displacement [m]; others as in `Predictions`."""
         fitted = _scale_mm(size, away, depth, self.scale)
-        if interior is not None:
-            fitted = fitted * np.exp(interior @ np.array(self.interior))
+        if size_gap is not None:
+            fitted = fitted * np.exp(size_gap @ np.array(self.size_gap))
         radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
         if np.any(np.asarray(distance) > 0.0):
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
@@ -127,14 +128,14 @@ class Intervals:
         self,
         spread: float | Floats = 0.0,
         *,
-        interior: Floats | None = None,
+        size_gap: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """Half width x of the force's interval: from predicted force times e^-x to predicted force times e^x.
 
         `spread` of an ensemble is as `Predictions.force_spread`; the others are as in `radius_at_mm`.
         """
-        grown = 0.0 if interior is None else interior @ np.array(self.force_interior)
+        grown = 0.0 if size_gap is None else size_gap @ np.array(self.force_size_gap)
         fitted = self.force_scale * np.exp(grown)
         inside = self.force * np.hypot(fitted, spread)
         return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
@@ -199,7 +200,7 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
             (
                 _force_error(predictions)
                 <= intervals.force_log(
-                    predictions.force_spread, interior=predictions.interior, distance=distance
+                    predictions.force_spread, size_gap=predictions.size_gap, distance=distance
                 )
             ).mean()
         ),
@@ -277,18 +278,18 @@ class _Scale(NamedTuple):
 
     scale: list[float]
     force_scale: float
-    interior: tuple[float, float]
-    force_interior: tuple[float, float]
+    size_gap: tuple[float, float]
+    force_size_gap: tuple[float, float]
 
     @classmethod
     def fit(cls, predictions: Predictions, many: bool) -> _Scale:
         """Fit the logarithms of the errors by least squares; `force_scale` is a root mean square residual.
 
-        `many` is True if there are enough shapes to fit the dependence on the interior.
+        `many` is True if there are enough shapes to fit the dependence on the inclusion.
         """
         x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
         t = np.broadcast_to(t, x.shape)
-        within = predictions.interior * many
+        within = predictions.size_gap * many
         grown = np.moveaxis(np.broadcast_to(within[:, None], (*x.shape, 2)), 2, 0)
         parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, *grown]
         found = _least_squares(parts, np.maximum(predictions.distance_mm, _LEAST_MM))
@@ -299,15 +300,15 @@ class _Scale(NamedTuple):
         return cls(
             scale=found[:N_FEATURES].tolist(),
             force_scale=float(np.sqrt((rest**2).mean())),
-            interior=(float(found[-2]), float(found[-1])),
-            force_interior=(float(slope[0]), float(slope[1])),
+            size_gap=(float(found[-2]), float(found[-1])),
+            force_size_gap=(float(slope[0]), float(slope[1])),
         )
 
     def scores(self, predictions: Predictions) -> tuple[Floats, Floats]:
         """Errors divided by their scale: of points (f, n), and of forces (f,)."""
         fitted = _scale_mm(_size(predictions), predictions.away, predictions.depth[:, None], self.scale)
-        fitted = fitted * np.exp(predictions.interior @ np.array(self.interior))[:, None]
-        force = self.force_scale * np.exp(predictions.interior @ np.array(self.force_interior))
+        fitted = fitted * np.exp(predictions.size_gap @ np.array(self.size_gap))[:, None]
+        force = self.force_scale * np.exp(predictions.size_gap @ np.array(self.force_size_gap))
         return (
             predictions.distance_mm / _with_spread(fitted, predictions.spread),
             _force_error(predictions) / np.hypot(force, predictions.force_spread),

@@ -107,17 +107,16 @@ class _File(BaseModel):
     ]
     force_scale: _Positive
     force: _Positive
-    interior: tuple[Finite, Finite] = (0.0, 0.0)  # files from before 2026-11-25 have neither
-    force_interior: tuple[Finite, Finite] = (0.0, 0.0)
+    size_gap: tuple[Finite, Finite]
+    force_size_gap: tuple[Finite, Finite]
 
     @model_validator(mode="before")
     @classmethod
-    def _size_alone(cls, values: Any) -> Any:
-        """Convert keys of files of 2026-11-25, which have the inclusion's size alone."""
-        if not isinstance(values, dict):
-            return values
-        old = {"inclusion": "interior", "force_inclusion": "force_interior"}
-        return {old.get(key, key): [value, 0.0] if key in old else value for key, value in values.items()}
+    def _without_gap(cls, values: Any) -> Any:
+        """Refuse files of before 2026-11-28: too narrow where the indenter comes near what is rigid."""
+        if isinstance(values, dict) and "size_gap" not in values and "scale" in values:
+            raise ValueError("intervals of before 2026-11-28, which do not know the gap to what is rigid")
+        return values
 
 
 def _paths(run: Run) -> list[Path]:

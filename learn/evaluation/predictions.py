@@ -15,7 +15,7 @@ from learn.data import Batch, MemoryDataset, Setup, Store, make_batch
 from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, Scenes, pokes_of
-from learn.validity import interior_at
+from learn.validity import cover_at, gap_mm, interior_of
 
 Floats = NDArray[np.float64]
 Cloud = Callable[[Setup], Floats]  # points (n, 3) on a setup's top face [m]
@@ -42,7 +42,21 @@ def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iter
     parts: list[Predictions] = []
     encode = functools.cache(lambda k: model.encode(scenes.scenes[k], model.prepare(scenes.scenes[k])))
     points = functools.cache(lambda k: scenes.scenes[k].points.cpu().numpy())
-    interior = functools.cache(lambda poke: interior_at(store, poke))
+    interior = functools.cache(
+        lambda geometry: interior_of(store.setups[store.setup_index[geometry]], store.profile[geometry])
+    )
+
+    def cover(poke: int) -> float:
+        inside = interior(int(store.geometry[poke]))
+        return 1e3 * cover_at(store.setup_of(poke), inside, store.path_start[poke], store.direction[poke])
+
+    def size_gap(poke: int, depth: float) -> tuple[float, float]:
+        inside, tip = (
+            interior(int(store.geometry[poke])),
+            store.path_start[poke] + depth * store.direction[poke],
+        )
+        return inside.size, gap_mm(store.setup_of(poke), inside, tip)
+
     for k, batch in scenes.each(batches):
         found = model.decode(encode(k), pokes_of(batch.to(scenes.device)))
         away = np.linalg.norm(points(k)[None] - batch.start.numpy()[:, None], axis=2)
@@ -58,7 +72,10 @@ def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iter
                 poke=poke,
                 softness=np.array(store.softness_names)[store.softness[poke]],
                 shape=np.array(store.shapes)[store.shape[poke]],
-                interior=np.array([interior(int(index)) for index in poke]),
+                cover=np.array([cover(int(index)) for index in poke]),
+                size_gap=np.array(
+                    [size_gap(int(p), float(d)) for p, d in zip(poke, batch.depth, strict=True)]
+                ),
                 spread=_or_zero(found.spread, away.shape),
                 force_spread=_or_zero(found.force_spread, poke.shape),
                 clock=batch.clock.double().cpu().numpy(),

@@ -60,7 +60,7 @@ def by_depth(predictions: Predictions) -> dict[str, Row]:
 
 def by_cover(predictions: Predictions) -> dict[str, Row]:
     """Metrics for each band of `COVER_BANDS_MM` that has frames: of the tissue below the contact."""
-    cover = predictions.interior[:, 1]
+    cover = predictions.cover
     rows = {}
     for low, high in itertools.pairwise(COVER_BANDS_MM):
         mine = (cover > low) & (cover <= high)

@@ -34,7 +34,7 @@ from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
 from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
-from learn.validity import QUANTITIES, RELATIVE_SLACK, Domain, interior_of, unit_of
+from learn.validity import NEAR, QUANTITIES, RELATIVE_SLACK, Domain, interior_of, unit_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "layers", "soft", "about"]
 _FAR = 1e30  # limit of a range on a side that is not checked
@@ -107,8 +107,8 @@ class PagePart(nn.Module):
             self.scale = torch.tensor(intervals.scale, dtype=torch.float64)
             self.factors = torch.tensor(intervals.factors, dtype=torch.float64)
             self.rings = torch.tensor(RING_EDGES_MM[1:-1], dtype=torch.float64)
-            self.interior = torch.tensor(intervals.interior, dtype=torch.float64)
-            self.force_interior = torch.tensor(intervals.force_interior, dtype=torch.float64)
+            self.size_gap = torch.tensor(intervals.size_gap, dtype=torch.float64)
+            self.force_size_gap = torch.tensor(intervals.force_size_gap, dtype=torch.float64)
 
     def outputs(self) -> list[str]:
         """Names of the outputs of `forward`."""
@@ -141,8 +141,9 @@ class PagePart(nn.Module):
             beyond, distance = self.ranges(values, about[2])
             found += [values, beyond, distance]
         if self.intervals is not None:
-            interior = torch.stack([about[3], 1e3 * self._cover(poke, soft)])
-            found += self._intervals(u.double(), tip, depth.clamp(min=_LEAST_DEPTH), interior, distance)
+            deep = depth.clamp(min=_LEAST_DEPTH)
+            size_gap = torch.stack([about[3], 1e3 * self._gap(tip + deep * push, soft)])
+            found += self._intervals(u.double(), tip, deep, size_gap, distance)
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
@@ -173,8 +174,15 @@ class PagePart(nn.Module):
         near = away <= away.min().clamp(min=self.radius)
         return torch.where(near, soft, torch.full_like(soft, _FAR)).min()
 
+    def _gap(self, tip: Tensor, soft: Tensor) -> Tensor:
+        """Distance from the indenter's tip to what is rigid [m], as `learn.validity.gap_mm`."""
+        x, y, z = self.points.unbind(1)
+        below = (tip[2] - (z - soft)).clamp(min=0.0)
+        square = (x - tip[0]).square() + (y - tip[1]).square() + below * below
+        return torch.sqrt(square.min()).clamp(max=NEAR)
+
     def _intervals(
-        self, u: Tensor, tip: Tensor, depth: Tensor, interior: Tensor, distance: Tensor
+        self, u: Tensor, tip: Tensor, depth: Tensor, size_gap: Tensor, distance: Tensor
     ) -> list[Tensor]:
         """Factor around the force and radius at each point [m], as `learn.evaluation.Intervals` has them."""
         assert self.intervals is not None
@@ -184,13 +192,13 @@ class PagePart(nn.Module):
         moved = torch.log(size / depth + 1e-4)
         parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
-        logs = logs + interior @ self.interior
+        logs = logs + size_gap @ self.size_gap
         ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
         # not -expm1(-t), which no runtime has in double: the digits lost at small t are negligible
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
-        fitted = self.intervals.force_scale * torch.exp(interior @ self.force_interior)
+        fitted = self.intervals.force_scale * torch.exp(size_gap @ self.force_size_gap)
         log = torch.sqrt((self.intervals.force * fitted) ** 2 + unknown * FORCE_UNKNOWN**2)
         return [torch.exp(log), radius]
 

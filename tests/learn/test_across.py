@@ -186,14 +186,16 @@ def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> N
     assert replaced_text(run, own) is None
 
 
-def test_intervals_of_before_the_cover_are_read(tmp_path: Path) -> None:
-    """Files of 2026-11-25 have one coefficient, of the inclusion's size, under another key."""
+def test_intervals_that_do_not_know_the_gap_are_refused(tmp_path: Path) -> None:
+    """Files of before 2026-11-28 are too narrow where the indenter comes near what is rigid."""
     run = _run(tmp_path)
-    own = replace(fit_intervals(_answers(0, 1.0).predictions), interior=(0.1, 0.2), force_interior=(0.3, 0.4))
+    own = replace(fit_intervals(_answers(0, 1.0).predictions), size_gap=(0.1, 0.2), force_size_gap=(0.3, 0.4))
     path = save_intervals(run, own)
+    assert load_intervals(run) == own
     content = json.loads(path.read_text())
-    old = {"inclusion": content.pop("interior")[0], "force_inclusion": content.pop("force_interior")[0]}
-    del content["weights"]
+    old = {"interior": content.pop("size_gap"), "force_interior": content.pop("force_size_gap")}
     path.write_text(json.dumps({**content, **old}))
-    found = load_intervals(run)
-    assert found == replace(own, interior=(0.1, 0.0), force_interior=(0.3, 0.0))
+    with pytest.raises(
+        InputError, match=r"intervals\.json: not readable .*do not know the gap.*writes it again"
+    ):
+        load_intervals(run)

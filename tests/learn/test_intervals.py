@@ -21,13 +21,13 @@ def _noisy(
     apart: float = 0.0,
     growth: float = 0.0,
     shapes: int = 1,
-    thin: float = 0.0,
+    near: float = 0.0,
 ) -> Predictions:
     """Predictions with errors that decrease with the distance from the tip and increase with the depth.
 
     `apart` is the standard deviation of the logarithm of a factor common to all errors of a poke. The
     logarithm of the errors grows by `growth` per mm of the inclusion's size, with `shapes` sizes of 1 mm and
-    more, and by `thin` per mm of cover; each poke has its own cover of 2 to 6 mm.
+    more, and by `near` per mm of the gap; each poke has its own gap of 2 to 6 mm.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
@@ -36,9 +36,9 @@ def _noisy(
     truth = np.zeros((frames, n, 3))
     truth[..., 2] = -depth[:, None] * np.exp(-away / 0.01)
     shape = np.repeat(np.arange(pokes) % shapes, 4)
-    cover = np.repeat(np.random.default_rng([seed, 1]).uniform(2, 6, pokes), 4)
+    gap = np.repeat(np.random.default_rng([seed, 1]).uniform(2, 6, pokes), 4)
     own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4)
-    own *= np.exp(growth * (1 + shape) + thin * (cover - 4))
+    own *= np.exp(growth * (1 + shape) + near * (gap - 4))
     scale = more * 0.02 * (own * depth)[:, None] * np.exp(-away / 0.02)
     predicted = truth + random.normal(size=truth.shape) * scale[..., None]
     force = depth * 500
@@ -52,7 +52,7 @@ def _noisy(
         poke=np.repeat(np.arange(pokes), 4),
         softness=np.full(frames, "S0"),
         shape=shape.astype(str),
-        interior=np.stack([1.0 + shape, cover], axis=1),
+        size_gap=np.stack([1.0 + shape, gap], axis=1),
     )
 
 
@@ -166,39 +166,39 @@ def test_errors_that_grow_with_the_inclusion_are_covered_beside_a_larger_one() -
     five, six = _noisy(200, 0, growth=0.3, shapes=5), _noisy(300, 1, growth=0.3, shapes=6)
     largest = six.where(six.shape == "5")
     intervals = fit_intervals(five)
-    assert intervals.interior == pytest.approx((0.3, 0.0), abs=0.03)
-    assert intervals.force_interior == pytest.approx((0.3, 0.0), abs=0.1)
+    assert intervals.size_gap == pytest.approx((0.3, 0.0), abs=0.03)
+    assert intervals.force_size_gap == pytest.approx((0.3, 0.0), abs=0.1)
     found = coverage(intervals, largest)
     assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther away errors are below 1e-4 mm
     assert 0.82 <= found.force <= 0.96
-    unaware = fit_intervals(dataclasses.replace(five, interior=np.zeros(0)))
+    unaware = fit_intervals(dataclasses.replace(five, size_gap=np.zeros(0)))
     assert max(coverage(unaware, largest).rings[:3]) < 0.75
 
 
 def test_few_shapes_do_not_say_how_errors_grow() -> None:
     intervals = fit_intervals(_noisy(200, 0, growth=0.3, shapes=4))
-    assert (intervals.interior, intervals.force_interior) == ((0.0, 0.0), (0.0, 0.0))
+    assert (intervals.size_gap, intervals.force_size_gap) == ((0.0, 0.0), (0.0, 0.0))
 
 
-def test_errors_that_grow_where_the_cover_is_thin_are_covered_there() -> None:
-    """Each poke has its own cover."""
-    many, other = _noisy(200, 0, thin=-0.4, shapes=5), _noisy(400, 1, thin=-0.4, shapes=5)
-    thinnest = other.where(other.interior[:, 1] < 3.0)
+def test_errors_that_grow_near_what_is_rigid_are_covered_there() -> None:
+    """Each poke has its own gap."""
+    many, other = _noisy(200, 0, near=-0.4, shapes=5), _noisy(400, 1, near=-0.4, shapes=5)
+    nearest = other.where(other.size_gap[:, 1] < 3.0)
     intervals = fit_intervals(many)
-    assert intervals.interior == pytest.approx((0.0, -0.4), abs=0.03)
-    assert intervals.force_interior == pytest.approx((0.0, -0.4), abs=0.1)
-    assert all(0.87 <= ring <= 0.93 for ring in coverage(intervals, thinnest).rings[:3])
-    unaware = fit_intervals(dataclasses.replace(many, interior=np.zeros(0)))
-    assert max(coverage(unaware, thinnest).rings[:3]) < 0.8
+    assert intervals.size_gap == pytest.approx((0.0, -0.4), abs=0.03)
+    assert intervals.force_size_gap == pytest.approx((0.0, -0.4), abs=0.1)
+    assert all(0.87 <= ring <= 0.93 for ring in coverage(intervals, nearest).rings[:3])
+    unaware = fit_intervals(dataclasses.replace(many, size_gap=np.zeros(0)))
+    assert max(coverage(unaware, nearest).rings[:3]) < 0.8
 
 
 def test_intervals_over_one_inclusion_are_those_of_its_frames() -> None:
-    intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5, thin=-0.2))
+    intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5, near=-0.2))
     frame = _noisy(5, 1, shapes=5).where(np.arange(20) == 17)
-    size, cover = frame.interior[0]
+    size, gap = frame.size_gap[0]
     assert size == 5.0
-    bare = dataclasses.replace(frame, interior=np.zeros(0))
-    over = intervals.over(size, cover)
+    bare = dataclasses.replace(frame, size_gap=np.zeros(0))
+    over = intervals.over(size, gap)
     np.testing.assert_allclose(over.radius_mm(bare), intervals.radius_mm(frame), rtol=1e-12)
-    assert over.force_log() == pytest.approx(intervals.force_log(interior=frame.interior)[0], rel=1e-12)
+    assert over.force_log() == pytest.approx(intervals.force_log(size_gap=frame.size_gap)[0], rel=1e-12)
     assert (over.radius_mm(bare) > intervals.radius_mm(bare)).all()

@@ -54,7 +54,7 @@ def test_values(name: str, values: list[float]) -> None:
 
 
 def test_frames_are_told_apart_by_the_cover_below_the_contact() -> None:
-    cases = dataclasses.replace(_cases(), interior=np.array([[9.0, 4.0], [9.0, 16.5]]))
+    cases = dataclasses.replace(_cases(), cover=np.array([4.0, 16.5]))
     rows = by_cover(cases)
     assert list(rows) == ["0 to 4 mm", "above 16 mm"]
     assert [row["rel force"].mean for row in rows.values()] == [0.5, 0.25]

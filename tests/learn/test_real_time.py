@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN
 from learn.predictor import Predictor
 from learn.real_time import RealTime
-from learn.validity import OTHER_LAW, Domain
+from learn.validity import OTHER_LAW, Domain, Interior, gap_mm
 from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
@@ -23,7 +25,7 @@ INTERIOR = {"shape": "shape-1", "softness": "S1"}
 WIDTHS = Intervals(
     level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
     factors=[1.5] * 5, force_scale=0.02, force=1.7,
-    interior=(0.05, -0.03), force_interior=(-0.04, 0.02),
+    size_gap=(0.05, -0.03), force_size_gap=(0.04, -0.02),
 )  # fmt: skip
 
 
@@ -74,6 +76,48 @@ def test_intervals_widen_with_the_distance_from_what_was_trained(touch: RealTime
     assert (np.diff(widths) > 0).all()
     assert widths[-1] == pytest.approx(FORCE_UNKNOWN, abs=0.01)
     assert radii[-1] > 0.99
+
+
+@pytest.mark.parametrize(
+    ("tip", "gap"),
+    [
+        ((0.0005, 0.0005, -0.004), 8.0),  # above the top of the inclusion
+        ((0.0165, 0.0005, -0.020), 7.0),  # beside its wall, deeper than its top
+        ((0.0135, 0.0005, -0.009), 5.0),  # off its edge: 4 mm aside and 3 mm above
+        ((0.0055, 0.0005, -0.020), 0.0),  # in it
+        ((0.0405, 0.0005, -0.025), 5.0),  # above the base
+        ((0.0405, 0.0005, -0.004), 16.0),  # far from all
+    ],
+)
+def test_the_gap_is_the_distance_from_the_tip_to_what_is_rigid(
+    tip: tuple[float, float, float], gap: float
+) -> None:
+    """A block 30 mm high, columns 1 mm wide, and a box with a wall at x = 9.5 mm, its top 12 mm deep."""
+    x, y = np.meshgrid(np.arange(-49, 50) * 1e-3 + 5e-4, np.arange(-19, 20) * 1e-3 + 5e-4)
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    soft = np.where(np.abs(points[:, 0]) < 0.0100, 0.012, 0.030)
+    setup: Any = SimpleNamespace(points=points)
+    assert gap_mm(setup, Interior(soft, 20.0, 18.0, 15.0), np.array(tip)) == pytest.approx(gap, abs=1e-9)
+
+
+def test_intervals_are_wider_near_what_is_rigid(predictor: Predictor) -> None:
+    """Of two depths of one contact, the interval of the force is the wider the smaller the gap is."""
+    angle = sum(predictor.domain.ranges["angle_deg"]) / 2 if predictor.domain else 0.0
+    touch, push = (
+        predictor.real_time({**INTERIOR, "shape": predictor.run.groups["train"][0]}),
+        _way(angle, 40),
+    )
+    gaps = []
+    for depth in (1.2e-3, 1.8e-3):
+        answer = touch(site=(5e-3, -10e-3), direction=push, depth=depth)
+        assert answer.inside
+        assert answer.force_interval is not None
+        tip = touch._setup.first_touch((5e-3, -10e-3), push) + depth * push
+        gap = gap_mm(touch._setup, touch._interior, tip)
+        gaps.append((gap, math.log(answer.force_interval[1] / answer.force)))
+    (far, narrow), (near, wide) = gaps
+    assert near < far <= 16.0
+    assert math.log(wide / narrow) == pytest.approx(-0.02 * (near - far), rel=0.02)
 
 
 def test_distance_is_in_units_of_the_trained_ranges() -> None:
