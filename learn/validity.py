@@ -297,7 +297,7 @@ def frame_distances(
     return found
 
 
-NEAR = 16e-3  # m; largest gap to what is rigid that errors depend on (studies/learning/gap.md)
+NEAR = 16e-3  # m; largest gap to what is rigid that errors depend on (studies/learning/two-fifths.md)
 
 
 class Interior(NamedTuple):
