@@ -7,17 +7,22 @@ near the axis; `of_path` makes invariants of them.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
+
+if TYPE_CHECKING:
+    from learn.models._encoder import Encoded
 
 WIDTHS = (1.5e-3, 3e-3)  # m; standard deviations of the means over columns near the axis
 STEP = 1e-3  # m between samples along the push
 WAY = (np.arange(30) + 0.5) * STEP  # m from first contact to each sample
 BEYOND = (0.0, 1e-3, 2e-3, 4e-3, 8e-3)  # m beyond the indenter's tip, where the invariants look
 N_AHEAD = len(WIDTHS) * (3 + len(BEYOND))
+_DIGITS = 6.0  # standard deviations beyond which a column has no weight in single precision
 LAYERS = 32  # of a column; the stored levels are averaged over them
 
 # The mean of 1 / s over the axis's neighbourhood, s the way to what is rigid: if a fraction B_k of it is
@@ -74,6 +79,54 @@ def blocked(
     rigid = torch.stack(found)
     before = torch.ones(len(WAY), len(WAY), dtype=torch.bool, device=rigid.device).tril()
     return (rigid[:, :, None] * before).amax(dim=3)  # a running maximum; ONNX has no operation for it
+
+
+class OneContact:
+    """`blocked` of one contact at a time over one interior, in NumPy."""
+
+    def __init__(self, encoded: Encoded, inclusion: int) -> None:
+        scene = encoded.scene
+        self._normals = np.ascontiguousarray(scene.normals.numpy().T)
+        self._roughly = self._normals.astype(np.float32)
+        self._area = scene.area.float().numpy()[:, None]
+        layers = encoded.layers[:, inclusion].numpy()
+        # of each layer of each column, in one row: rigid fraction, and what the next layer adds to it
+        self._layers = np.ascontiguousarray(layers[:, :-1]).reshape(-1)
+        self._more = np.ascontiguousarray(np.diff(layers, axis=1)).reshape(-1)
+        self._per_height = LAYERS / scene.height
+        widths = np.array(WIDTHS)[:, None, None]
+        self._exponents = (-0.5 / widths**2).astype(np.float32)
+
+    def __call__(self, offset: NDArray[np.float64], push: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Fraction of the tissue about the axis that is rigid, (widths, samples); `offset` (3, n) [m]."""
+        way, few = WAY, self._near(offset.astype(np.float32), push.astype(np.float32))
+        offset, normals = offset[:, few], self._normals[:, few]
+        down, sink, along = ((offset * normals).sum(axis=0), -(push @ normals), push @ offset)
+        whole = (offset * offset).sum(axis=0)[:, None]
+        z = down[:, None] + sink[:, None] * way
+        square = whole + way * (way - 2 * along[:, None]) - z * z
+        place = np.minimum(np.maximum(z * self._per_height - 0.5, 0), LAYERS)
+        low = np.minimum(place.astype(np.intp), LAYERS - 1)
+        part = (place - low).astype(np.float32)
+        low += few[:, None] * LAYERS
+        rigid = self._layers.take(low, mode="clip") + part * self._more.take(low, mode="clip")
+        apart = (square - square.min(axis=0)).astype(np.float32)
+        weight = np.exp(apart * self._exponents) * self._area[few]
+        found = (weight * rigid).sum(axis=1) / weight.sum(axis=1)
+        return np.asarray(np.maximum.accumulate(found, axis=1))
+
+    def _near(self, offset: NDArray[np.float32], push: NDArray[np.float32]) -> NDArray[np.intp]:
+        """Columns near the axis; the others are too far from it for any digit of the means."""
+        first, last = np.float32(WAY[0]), np.float32(WAY[-1])
+        down, sink, along = (offset * self._roughly).sum(axis=0), -(push @ self._roughly), push @ offset
+        whole = (offset * offset).sum(axis=0)
+        nearest = (along + sink * down) / np.maximum(1 - sink * sink, np.float32(1e-6))
+        nearest = np.minimum(np.maximum(nearest, first), last)
+        square, *ends = (
+            whole + at * (at - 2 * along) - np.square(down + sink * at) for at in (nearest, first, last)
+        )
+        limit = max(end.min() for end in ends) + (_DIGITS * WIDTHS[-1]) ** 2
+        return np.flatnonzero(square <= limit)
 
 
 def clear(blocked: Any, radius: float) -> Any:

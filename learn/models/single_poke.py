@@ -36,7 +36,6 @@ _GAUSS = [(10 + k, 1) for k in range(10)] + [(21, 1), (22, 1), (26, 1)]
 _TANH = [(20, 1), (30, 1), (31, 1)]
 _OF_DEPTH = [(8, 1), (25, 1), (23, -1), (24, -1), (27, 1), (28, 1), (29, 1)]
 _OF_POKE = (6, 7)
-_DIGITS = 6.0  # standard deviations beyond which a column has no weight in single precision
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -101,7 +100,7 @@ class SinglePoke:
         self._clear = encoded.clear[:, inclusion].double().numpy()
         self._per_clear = 1 / np.maximum(self._clear, _contact.LEAST_CLEAR)
         self._column = model.column(scene)
-        self._path = _Path(encoded, inclusion)
+        self._ahead = _ahead.OneContact(encoded, inclusion)
         vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
         self._vectors = np.ascontiguousarray(vectors.numpy())
         prior = model.prior.coefficients.numpy()  # (radial, factors, 3)
@@ -245,7 +244,7 @@ class SinglePoke:
         radial = (cores[:, None] * falls).reshape(-1, len(size))
         beside = np.flatnonzero(aside < _contact.LAND[1])
         place = _contact.Place(r.T[beside], push, None, along[beside], aside[beside], self._edge)
-        blocked = self._path(self._radius * r64, direction)
+        blocked = self._ahead(self._radius * r64, direction)
         return _Touch(
             r=r,
             unit=unit,
@@ -299,54 +298,6 @@ class SinglePoke:
         amounts = (self._prior_of_poke @ factors) @ at.radial
         amounts += at.fixed
         return amounts.astype(np.float32)
-
-
-class _Path:
-    """`_ahead.blocked` of one contact."""
-
-    def __init__(self, encoded: Encoded, inclusion: int) -> None:
-        scene = encoded.scene
-        self._normals = np.ascontiguousarray(scene.normals.numpy().T)
-        self._roughly = self._normals.astype(np.float32)
-        self._area = scene.area.float().numpy()[:, None]
-        layers = encoded.layers[:, inclusion].numpy()
-        # of each layer of each column, in one row: rigid fraction, and what the next layer adds to it
-        self._layers = np.ascontiguousarray(layers[:, :-1]).reshape(-1)
-        self._more = np.ascontiguousarray(np.diff(layers, axis=1)).reshape(-1)
-        self._per_height = _ahead.LAYERS / scene.height
-        widths = np.array(_ahead.WIDTHS)[:, None, None]
-        self._exponents = (-0.5 / widths**2).astype(np.float32)
-
-    def __call__(self, offset: Doubles, push: Doubles) -> Floats:
-        """Fraction of the tissue about the axis that is rigid, (widths, samples); `offset` (3, n) [m]."""
-        way, few = _ahead.WAY, self._near(offset.astype(np.float32), push.astype(np.float32))
-        offset, normals = offset[:, few], self._normals[:, few]
-        down, sink, along = ((offset * normals).sum(axis=0), -(push @ normals), push @ offset)
-        whole = (offset * offset).sum(axis=0)[:, None]
-        z = down[:, None] + sink[:, None] * way
-        square = whole + way * (way - 2 * along[:, None]) - z * z
-        place = np.minimum(np.maximum(z * self._per_height - 0.5, 0), _ahead.LAYERS)
-        low = np.minimum(place.astype(np.intp), _ahead.LAYERS - 1)
-        part = (place - low).astype(np.float32)
-        low += few[:, None] * _ahead.LAYERS
-        rigid = self._layers.take(low, mode="clip") + part * self._more.take(low, mode="clip")
-        apart = (square - square.min(axis=0)).astype(np.float32)
-        weight = np.exp(apart * self._exponents) * self._area[few]
-        found = (weight * rigid).sum(axis=1) / weight.sum(axis=1)
-        return np.asarray(np.maximum.accumulate(found, axis=1))
-
-    def _near(self, offset: Floats, push: Floats) -> NDArray[np.intp]:
-        """Columns near the axis; the others are too far from it for any digit of the means."""
-        first, last = np.float32(_ahead.WAY[0]), np.float32(_ahead.WAY[-1])
-        down, sink, along = (offset * self._roughly).sum(axis=0), -(push @ self._roughly), push @ offset
-        whole = (offset * offset).sum(axis=0)
-        nearest = (along + sink * down) / np.maximum(1 - sink * sink, np.float32(1e-6))
-        nearest = np.minimum(np.maximum(nearest, first), last)
-        square, *ends = (
-            whole + at * (at - 2 * along) - np.square(down + sink * at) for at in (nearest, first, last)
-        )
-        limit = max(end.min() for end in ends) + (_DIGITS * _ahead.WIDTHS[-1]) ** 2
-        return np.flatnonzero(square <= limit)
 
 
 def _column(*values: float) -> Floats:
