@@ -249,8 +249,9 @@ class Predictor:
         asked = values, kind_of(poke, self.store), poke.law
         distance = self.domain.distance(values, poke.law) if self.domain else 0.0
         away = np.linalg.norm(setup.points - pokes.start.numpy(), axis=1)
-        gap = gap_mm(setup, interior, start + float(pokes.depth[0]) * direction)
-        radius, factor = self._interval(response, away, float(pokes.depth[0]), (interior.size, gap), distance)
+        depth = float(pokes.depth[0])
+        near = np.array([interior.size, gap_mm(setup, interior, start + depth * direction)])
+        radius, factor = self._interval(response, away, depth, near, distance)
         return PokePrediction(
             poke=poke,
             points=setup.points,
@@ -268,22 +269,23 @@ class Predictor:
         response: Response,
         away: Floats,
         depth: float,
-        size_gap: tuple[float, float],
+        size_gap: Floats,
         distance: float,
     ) -> tuple[Floats | None, float | None]:
         """Radius at each point [m] and factor around the force; None without intervals."""
         if self.intervals is None:
             return None, None
-        intervals = self.intervals.over(*size_gap)
-        radius = intervals.radius_at_mm(
+        radius = self.intervals.radius_at_mm(
             np.linalg.norm(response.displacement[0].numpy(), axis=1),
             away=away,
             depth=depth,
             spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
+            size_gap=size_gap,
             distance=distance,
         )
         spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
-        return radius * 1e-3, float(np.exp(intervals.force_log(spread, distance=distance)))
+        grown = self.intervals.force_log(spread, size_gap=size_gap, distance=distance)
+        return radius * 1e-3, float(np.exp(grown))
 
     @cached_property
     def intervals(self) -> Intervals | None:

@@ -11,9 +11,9 @@ Lengths here are in metres. `torch.set_num_threads(1)` is the fastest if the mac
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,7 +27,6 @@ from learn.scene_file import kind_of, load_poke, scene_and_poke
 from learn.validity import cover_at, gap_mm, poke_values
 
 if TYPE_CHECKING:
-    from learn.evaluation import Intervals
     from learn.predictor import Predictor
 
 Floats = NDArray[np.float64]
@@ -53,19 +52,15 @@ class Answer:
     force_interval: tuple[float, float] | None
     inside: bool | None
     distance: float
-    _intervals: Intervals | None
-    _away: Floats | None
-    _depth: float
+    _radius_mm: Callable[[Floats], Floats] | None
 
     @cached_property
     def radius(self) -> Floats | None:
         """Radius of the 90 % interval at each point [m], shape (n,); None without intervals or contact."""
-        if self._intervals is None or self._away is None:
+        if self._radius_mm is None:
             return None
         size = np.sqrt(np.einsum("nk,nk->n", self.displacement, self.displacement))
-        distance = 0.0 if math.isnan(self.distance) else self.distance
-        away, depth = self._away, self._depth
-        return self._intervals.radius_at_mm(size, away=away, depth=depth, distance=distance) * 1e-3
+        return self._radius_mm(size) * 1e-3
 
 
 class _Contact(NamedTuple):
@@ -162,7 +157,7 @@ class RealTime:
         key = (*site, *push)
         if self._last is None or self._last[0] != key:
             self._last = key, self._contact(site, push)
-        start, cover, from_contact = self._last[1]
+        start, cover, away = self._last[1]
         u, force = self._single(start, push, depth, self.modulus)
         values = poke_values(
             self._setup,
@@ -176,22 +171,23 @@ class RealTime:
         distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
         if depth <= 0.0:
             distance = 0.0  # nothing moves, whatever was trained
-        away, interval, intervals = None, None, None
+        interval, radius_mm = None, None
         if self._intervals is not None and depth > 0.0:
             gap = gap_mm(self._setup, self._interior, start + depth * push)
-            intervals = self._intervals.over(self._interior.size, gap)
-            away = from_contact
-            factor = math.exp(intervals.force_log(distance=0.0 if math.isnan(distance) else distance))
+            near = np.array([self._interior.size, gap])
+            known = 0.0 if math.isnan(distance) else distance
+            factor = math.exp(self._intervals.force_log(size_gap=near, distance=known))
             interval = (force / factor, force * factor)
+            radius_mm = partial(
+                self._intervals.radius_at_mm, away=away, depth=depth, size_gap=near, distance=known
+            )
         return Answer(
             displacement=u,
             force=force,
             force_interval=interval,
             inside=depth <= 0.0 or (None if math.isnan(distance) else self._known and distance == 0.0),
             distance=distance,
-            _intervals=intervals,
-            _away=away,
-            _depth=depth,
+            _radius_mm=radius_mm,
         )
 
     def _contact(self, site: Sequence[float], push: Floats) -> _Contact:

@@ -25,9 +25,8 @@ Ann. Statist. 49, 2021). The run's own test part is not used for its intervals (
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -78,18 +77,6 @@ class Intervals:
     size_gap: tuple[float, float] = (0.0, 0.0)
     force_size_gap: tuple[float, float] = (0.0, 0.0)
 
-    def over(self, size: float, gap: float) -> Intervals:
-        """Intervals over an inclusion of this size, this near to it [mm]; they no longer depend on these."""
-        more = self.size_gap[0] * size + self.size_gap[1] * gap
-        force_more = self.force_size_gap[0] * size + self.force_size_gap[1] * gap
-        return replace(
-            self,
-            scale=[self.scale[0] + more, *self.scale[1:]],
-            force_scale=self.force_scale * math.exp(force_more),
-            size_gap=(0.0, 0.0),
-            force_size_gap=(0.0, 0.0),
-        )
-
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
 
@@ -120,7 +107,7 @@ class Intervals:
         if size_gap is not None:
             fitted = fitted * np.exp(size_gap @ np.array(self.size_gap))
         radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
-        if np.any(np.asarray(distance) > 0.0):
+        if (np.asarray(distance) > 0.0).any():
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
         return np.asarray(radius)
 

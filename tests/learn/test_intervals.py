@@ -192,13 +192,18 @@ def test_errors_that_grow_near_what_is_rigid_are_covered_there() -> None:
     assert max(coverage(unaware, nearest).rings[:3]) < 0.8
 
 
-def test_intervals_over_one_inclusion_are_those_of_its_frames() -> None:
+def test_intervals_of_one_poke_are_those_of_its_frame() -> None:
     intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5, near=-0.2))
     frame = _noisy(5, 1, shapes=5).where(np.arange(20) == 17)
-    size, gap = frame.size_gap[0]
-    assert size == 5.0
+    assert frame.size_gap[0][0] == 5.0
+    radius = intervals.radius_at_mm(
+        np.linalg.norm(frame.predicted[0], axis=1),
+        away=frame.away[0],
+        depth=float(frame.depth[0]),
+        size_gap=frame.size_gap[0],
+    )
+    np.testing.assert_allclose(radius, intervals.radius_mm(frame)[0], rtol=1e-6)  # lengths in float32
+    of_force = intervals.force_log(size_gap=frame.size_gap)[0]
+    assert intervals.force_log(size_gap=frame.size_gap[0]) == pytest.approx(of_force, rel=1e-12)
     bare = dataclasses.replace(frame, size_gap=np.zeros(0))
-    over = intervals.over(size, gap)
-    np.testing.assert_allclose(over.radius_mm(bare), intervals.radius_mm(frame), rtol=1e-12)
-    assert over.force_log() == pytest.approx(intervals.force_log(size_gap=frame.size_gap)[0], rel=1e-12)
-    assert (over.radius_mm(bare) > intervals.radius_mm(bare)).all()
+    assert (radius > intervals.radius_mm(bare)).all()
