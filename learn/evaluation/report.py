@@ -13,7 +13,8 @@ from typing import Any
 
 import jinja2
 
-from learn.evaluation.evaluation import Covered, Evaluation, parts_of
+from learn.evaluation.evaluation import Covered, Evaluation
+from learn.evaluation.new_to_run import parts_of
 from learn.evaluation.pictures import draw_forces, draw_learning, draw_poke, encoded, ranked_pokes
 from learn.evaluation.summary import Row, Value, over_folds
 from learn.metrics import METRICS, RING_EDGES_MM
