@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from calibration._numerics import rms_of
 from calibration.diagnosis.drawing._curves import DrawnCurve, before_and_after, legend_of, most_telling
 from calibration.diagnosis.drawing._domain import Figure, Section, figures_of
 from calibration.diagnosis.drawing._panels import (
@@ -95,7 +96,7 @@ def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[F
             after,
             quantity="stress",
             unit=UNIT,
-            noise=float(np.sqrt(np.mean(np.concatenate([d.sd for d in records]) ** 2))),
+            noise=rms_of(d.sd for d in records),
             dashed="the points' own error",
         ),
     ]
