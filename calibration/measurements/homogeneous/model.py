@@ -35,7 +35,8 @@ from calibration.measurements.homogeneous._forward import (
     with_effects,
     yielding,
 )
-from calibration.measurements.homogeneous._record import ASSUMED, Record, everything, protocol, records_of
+from calibration.measurements.homogeneous._point_sd import ASSUMED
+from calibration.measurements.homogeneous._record import Record, everything, protocol, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
 from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
