@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, PokeTrial
-from calibration.measurements._baseline import Baseline
+from calibration.measurements._baseline import Baseline, least_squares_moduli
 from calibration.measurements._effect import Candidate, reaches
-from calibration.measurements._folds import fifths
+from calibration.measurements._folds import fifths, joined
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
@@ -155,21 +155,15 @@ class IndentationModel(MeasurementModel):
 
         ValueError if the modulus of a specimen would not be positive.
         """
-        found = {}
-        for name in self.baseline.specimens:
-            top = bottom = 0.0
-            for r in self.records:
-                if r.specimen == name:
-                    unit = self.forward.base(r).at(r.depth)
-                    first = (r.cycle == 1) & (r.direction > 0)
-                    used = first if first.any() else np.ones(r.points, dtype=bool)
-                    top += float(unit[used] @ r.force[used])
-                    bottom += float(unit[used] @ unit[used])
-            if not top > 0.0:
-                raise ValueError(
-                    f"specimen {name}: its force falls with the depth, no shear modulus gives that"
-                )
-            found[name] = top / bottom
+        used = [_first_loading(r) for r in self.records]
+        found = least_squares_moduli(
+            (
+                (r.specimen, self.forward.base(r).at(r.depth)[mine], r.force[mine])
+                for r, mine in zip(self.records, used, strict=True)
+            ),
+            specimens=self.baseline.specimens,
+            falling="its force falls with the depth",
+        )
         return self.baseline.start(found)
 
     def forces(self, state: State) -> list[Array]:
@@ -332,17 +326,18 @@ class IndentationModel(MeasurementModel):
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Fold labels by trial, material, phase label, and fifth of each record."""
-        found: dict[str, list[str]] = {}
+        found = []
         for k, size in self._row_blocks():
             r = self.records[k]
-            for name, labels in {
+            of_points = {
                 "leave-one-trial-out": [r.name] * r.points,
                 "leave-one-material-out": [r.material] * r.points,
                 "leave-one-phase-out": [r.labels[int(p)] for p in r.phase],
                 "leave-one-fifth-out": fifths(r.points),
-            }.items():
-                found.setdefault(name, []).extend(label for label in labels for _ in range(size // r.points))
-        return found
+            }
+            each = size // r.points
+            found.append({name: np.repeat(labels, each).tolist() for name, labels in of_points.items()})
+        return joined(found)
 
     def _discrepancies(self) -> Mapping[str, Array]:
         across = len(self.row_record) - sum(r.points for r in self.records)
@@ -410,3 +405,9 @@ class IndentationModel(MeasurementModel):
             measured=r.force,
             of_rows=None if rows == r.points else np.eye(r.points, rows),
         )
+
+
+def _first_loading(record: Record) -> NDArray[np.bool_]:
+    """Mask of the points of the first loading; of all points if the record has none."""
+    first = (record.cycle == 1) & (record.direction > 0)
+    return first if first.any() else np.ones(record.points, dtype=bool)
