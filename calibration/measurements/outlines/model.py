@@ -35,8 +35,8 @@ from calibration.measurements.outlines._photographs import (
     TracedPhotograph,
     coefficients,
     distances,
-    feet_of,
     photographs_of,
+    projections_of,
     shown,
 )
 from calibration.measurements.outlines._predicted import photographed
@@ -162,7 +162,9 @@ class OutlineModel(MeasurementModel):
             seen = [p for p in self.records if p.specimen in left]
             results = replace(self.solutions.surrogate, photographs=seen).solve([state])[0]
             for p, r in zip(seen, results, strict=True):
-                cost[p.specimen] += np.inf if r is None else float(np.sum(distances(feet_of(p, r)) ** 2))
+                cost[p.specimen] += (
+                    np.inf if r is None else float(np.sum(distances(projections_of(p, r)) ** 2))
+                )
             left = {n for n in left if cost[n] < best[n]}
             for n in left:
                 best[n], found[n] = cost[n], float(shear)
@@ -200,8 +202,8 @@ class OutlineModel(MeasurementModel):
     def _corrected(self, state: State, base: Array, coarser: Fidelity, finer: Fidelity) -> tuple[Array, str]:
         """Correction of the search's mesh error [m], shape (rows,), and "" or the reason why it is zero.
 
-        It is a Richardson extrapolation of second order in the number of rings; zero if a reference has no
-        equilibrium.
+        It is a Richardson extrapolation of second order in the number of radial elements; zero if a reference
+        has no equilibrium.
         """
         if self.baseline.whole and self.uncorrected:
             return np.zeros(len(base)), self.uncorrected  # a law that has none here is not tried again
@@ -212,7 +214,7 @@ class OutlineModel(MeasurementModel):
             if problem:
                 return np.zeros(len(base)), problem
             values.append(self.solutions.values_of(fine, state))
-        n, more = coarser.rings**2, finer.rings**2
+        n, more = coarser.radial_elements**2, finer.radial_elements**2
         return values[1] + n / (more - n) * (values[1] - values[0]) - base, ""
 
     def _misfit(self, states: Sequence[State]) -> Array:
@@ -333,12 +335,12 @@ class OutlineModel(MeasurementModel):
         for p, r in zip(used.photographs, results, strict=True):
             images = self.scenes.images(p.beam, state, time=p.time)
             lines = [shown(line, images) for line in edges(r)]
-            feet = feet_of(p, r, images)
-            raw = distances(feet) + p.basis @ self._correction[p.rows]
+            projections = projections_of(p, r, images)
+            raw = distances(projections) + p.basis @ self._correction[p.rows]
             found.append(
                 SeenPhotograph(
                     photograph=p,
-                    feet=feet,
+                    projections=projections,
                     simulated=lines,
                     raw=raw,
                     left=raw - p.basis @ known[p.rows],

@@ -62,8 +62,8 @@ def tiny(
                 length=length / 1e3,
                 supports=supports,  # type: ignore[arg-type]
                 element=COARSE.element,  # type: ignore[arg-type]
-                axial_element_size=COARSE.layer,
-                radial_elements=COARSE.rings,
+                axial_element_size=COARSE.axial_element_size,
+                radial_elements=COARSE.radial_elements,
                 solver=COARSE.solver,
             )
             captures = []

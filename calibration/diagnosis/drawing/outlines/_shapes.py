@@ -89,7 +89,7 @@ def _panel(axes: Any, beam: DrawnTrial, factor: float, depth: float, *, apart: b
     count = len(beam.photographs)
     for n, p in enumerate(beam.photographs):
         for e in p.edges:
-            every = max(1, len(e.foot) // DOTS)
+            every = max(1, len(e.nearest) // DOTS)
             dots = _moved(e, factor, e.before)[n % every :: every]
             axes.plot(*dots.T, "o", ms=2.0, mew=0, alpha=0.8, color=shade(MEASURED, n, count), zorder=3)
             if apart and e.smooth_after is not None:
@@ -106,7 +106,7 @@ def _panel(axes: Any, beam: DrawnTrial, factor: float, depth: float, *, apart: b
 
 
 def _moved(edge: DrawnEdge, factor: float, distance: Any) -> Any:
-    return 1e3 * (edge.foot + factor * distance[:, None] * edge.normal)
+    return 1e3 * (edge.nearest + factor * distance[:, None] * edge.normal)
 
 
 def _mean(beam: DrawnTrial, side: str, factor: float, *, extended: bool) -> Any:
