@@ -14,41 +14,15 @@ from _folders import (
     outline_columns,
     write_experiment,
 )
-from scipy.integrate import solve_bvp
+from hanging_beams import elastica
 
 from calibration.inference import Estimate
 from calibration.study import Calibration
 
-RADIUS, LENGTH = 0.010, 0.050
-
-
-def elastica(shear_modulus: float) -> tuple[np.ndarray, np.ndarray]:
-    """Upper and lower edge [mm], (25, 2) each, of a round cantilever under its own weight.
-
-    Inextensible elastica E I theta'' = w (L - s) cos theta; theta is the downward slope, rho = 1000 kg/m3,
-    E = 3 G.
-    """
-    stiffness = 3.0 * shear_modulus * np.pi * RADIUS**4 / 4.0
-    weight = 1000.0 * 9.81 * np.pi * RADIUS**2
-    s = np.linspace(0.0, LENGTH, 201)
-
-    def slopes(at: np.ndarray, y: np.ndarray) -> np.ndarray:
-        pull = -weight * (LENGTH - at) * np.cos(y[0]) / stiffness
-        return np.vstack([y[1], pull, np.cos(y[0]), -np.sin(y[0])])
-
-    def ends(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return np.array([a[0], b[1], a[2], a[3]])
-
-    found = solve_bvp(slopes, ends, s, np.zeros((4, len(s))), tol=1e-8)
-    assert found.success
-    theta, _, x, z = found.sol(np.linspace(0.03, 1.0, 25) * LENGTH)
-    middle, across = np.column_stack([x, z]), np.column_stack([np.sin(theta), np.cos(theta)])
-    return 1e3 * (middle + RADIUS * across), 1e3 * (middle - RADIUS * across)
-
 
 def beam_folder(folder: Path) -> Path:
     """Experiment with one cantilever of 50 mm with one traced photograph, and one beam without an outline."""
-    upper, lower = elastica(10e3)
+    upper, lower = elastica(10e3, 0.050, at=np.linspace(0.03, 1.0, 25))
     photographs = [capture_entry(60.0, "beams/b.csv")]
     traced = beam_entry("hanging", material="S1", captures=photographs, free_length_mm=50.0)
     pixel = {"squares": [9, 6], "square_mm": 10.0}
