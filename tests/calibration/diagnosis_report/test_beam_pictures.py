@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bent_beams import bent_folder
-from diagnosis_cases import Page
+from html_page import Page
 
 from calibration.diagnosis import Diagnosis, Rules, diagnose
 from calibration.diagnosis.drawing import figures_of

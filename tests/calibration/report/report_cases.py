@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -102,48 +101,3 @@ def estimate(name: str = "shear_modulus", *, value: float = 1e5, seen: str = "id
         relative=True,
         seen=seen,  # type: ignore[arg-type]
     )
-
-
-class Page(HTMLParser):
-    """Parts of the page that the tests check: text, values of <data>, image sources, tags, table rows."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.words: list[str] = []
-        self.values: list[float] = []
-        self.sources: list[str] = []
-        self.links: list[str] = []
-        self.tags: set[str] = set()
-        self.rows: list[list[str]] = []
-        self.inside = False
-        self.raw = path.read_text(encoding="utf-8")
-        self.feed(self.raw)
-
-    @property
-    def text(self) -> str:
-        return " ".join(" ".join(self.words).split())
-
-    def row(self, first: str) -> list[str]:
-        """First table row whose first cell is `first`."""
-        return next(r for r in self.rows if r and r[0] == first)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        found = dict(attrs)
-        self.tags.add(tag)
-        if tag == "data":
-            self.values.append(float(found["value"] or "nan"))
-        if tag == "tr":
-            self.rows.append([])
-        if tag == "td":
-            self.rows[-1].append("")
-            self.inside = True
-        self.sources += [v for k, v in attrs if k == "src" and v]
-        self.links += [v for k, v in attrs if k == "href" and v]
-
-    def handle_endtag(self, tag: str) -> None:
-        self.inside = self.inside and tag != "td"
-
-    def handle_data(self, data: str) -> None:
-        self.words.append(data)
-        if self.inside:
-            self.rows[-1][-1] = (self.rows[-1][-1] + data).strip()
