@@ -91,7 +91,7 @@ class Parametrisation:
     assemble : callable
         Values by coordinate name -> the law's parameters.
     parts : tuple of PartCoordinates
-        What the material has beside the law; their coordinates are the last ones.
+        Parts of the material beside the law; their coordinates are the last ones.
     """
 
     law: str

@@ -47,9 +47,9 @@ class CardParts:
     Attributes
     ----------
     name : str
-        Of the card, for sentences.
+        Name of the card, for messages.
     parts : mapping
-        By the field of `tisim.Material`.
+        Parts by the field of `tisim.Material`.
     path : str
         Where it was read, for the command that makes a fit again.
     """
