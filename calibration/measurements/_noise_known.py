@@ -118,7 +118,7 @@ class NoiseKnown:
         if not self.known:
             found.append(
                 "the noise is not known: the lab does not state it, and no test was repeated often enough to"
-                " show it. Shares and chances hold for what was assumed"
+                " show it. Explained fractions and p-values hold for the assumed noise"
             )
         return found
 
