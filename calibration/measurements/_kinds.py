@@ -161,8 +161,7 @@ def build(
 def contribution(
     kind: Kind, own: Experiment, context: FitContext, objective: ObjectiveName = "likelihood"
 ) -> Contribution | None:
-    """What a kind brings to a fit of an experiment of its trials of one material; None if it has no such
-    objective."""
+    """Objective of a kind, for a fit of its trials of one material; None if it has no such objective."""
     if objective in kind.objectives:
         return kind.objectives[objective]()(own, context)
     if objective != "likelihood":

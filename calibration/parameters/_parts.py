@@ -19,7 +19,7 @@ Option = Literal["time", "damage", "fibres"]
 
 @dataclass(frozen=True, kw_only=True)
 class ProtocolWindow:
-    """What the courses of a material's tests can show of its parts.
+    """Times and peak strains of a material's tests, which limit what they show of its parts.
 
     Attributes
     ----------

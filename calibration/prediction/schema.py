@@ -199,7 +199,7 @@ def _record(found: Prediction, r: Record) -> RecordEntry:
 
 
 def _plain(values: Array, r: Record) -> list[float]:
-    """Of the points that are compared, to six digits."""
+    """Values of the points that are compared, to six digits."""
     return [float(f"{v:.6g}") for v in values[r.used]]
 
 

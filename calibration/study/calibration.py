@@ -182,7 +182,7 @@ class Calibration:
 
     @property
     def material_parts(self) -> dict[str, Part]:
-        """What the material has beside its law, by the field of `tisim.Material`."""
+        """Parts of the material beside its law, by the field of `tisim.Material`."""
         if not self.u or not (self.parts or self.held):
             return {}
         law = self.parametrisation

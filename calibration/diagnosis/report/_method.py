@@ -11,7 +11,7 @@ from calibration.pages import listed, significant
 
 
 def false_alarms(diagnosis: Diagnosis) -> str:
-    """What chance alone has to do with the best cause."""
+    """Sentences on the improvement that noise alone gives, and on the p-value of the best cause."""
     finding = diagnosis.finding
     noise = finding.null.max_improvement(finding.screened)
     limits = (

@@ -51,7 +51,7 @@ def assumed_errors(records: Sequence[Record]) -> list[str]:
     ]
 
 
-def noise_of(records: Sequence[Record], points: int) -> str:
+def described_noise(records: Sequence[Record], points: int) -> str:
     """Description of the noise model of records with this number of compared points."""
     stated = [r for r in records if not r.estimated]
     parts = []

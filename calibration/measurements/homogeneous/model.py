@@ -38,7 +38,7 @@ from calibration.measurements.homogeneous._forward import (
 from calibration.measurements.homogeneous._point_sd import ASSUMED
 from calibration.measurements.homogeneous._record import Record, everything, protocol, records_of
 from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
-from calibration.measurements.homogeneous._sentences import assumed_errors, noise_of, remarks_on
+from calibration.measurements.homogeneous._sentences import assumed_errors, described_noise, remarks_on
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
 from calibration.parameters import Parameters, parametrisation
@@ -403,7 +403,7 @@ class HomogeneousModel(MeasurementModel):
         return assumed_errors(self.records)
 
     def noise_sentence(self) -> str:
-        return noise_of(self.records, self.points)
+        return described_noise(self.records, self.points)
 
     def shown(self, k: int) -> Shown:
         r = self.records[k]

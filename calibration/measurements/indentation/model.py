@@ -24,7 +24,7 @@ from calibration.measurements._folds import fifths, joined
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
-from calibration.measurements._records import listed, over_time
+from calibration.measurements._records import over_time
 from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
@@ -42,6 +42,7 @@ from calibration.measurements.indentation._memory_force import spectrum_of
 from calibration.measurements.indentation._noise import TOUCH, noise_of
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
 from calibration.measurements.indentation._scene import BULK_RATIO, FRICTION, geometry_of
+from calibration.measurements.indentation._sentences import described_noise, remarks_on
 from calibration.measurements.indentation.experiments import EXPERIMENTS, IndentationTest
 from tisim.parts import Spectrum
 
@@ -361,38 +362,10 @@ class IndentationModel(MeasurementModel):
         return list(self._left_out)
 
     def remarks(self) -> list[str]:
-        """Sentences on points left out, estimated errors, assumed order of trials, and missing effects."""
-        found = self.left_out()
-        guessed = [r for r in self.records if r.estimated]
-        if guessed:
-            relative = [
-                float(np.median(r.own_sd * np.sqrt(r.count)) / np.abs(r.force).max()) for r in guessed
-            ]
-            found.append(
-                f"the lab states no error of the force of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the force; its median is"
-                f" {100 * float(np.median(relative)):.2g} % of the largest force"
-            )
-        again = [r for r in self.records if r.unloaded[0] > 0.0]
-        if again:
-            text = "taken to follow the indentations of the same specimen that the file lists before"
-            found.append(f"{listed(again)}: {text}")
-        found.append(
-            "the catalogue of indentation has no stiffer skin and no base that slips: they are not simulated"
-            " yet"
-        )
-        return found
+        return remarks_on(self.records, self.left_out())
 
     def noise_sentence(self) -> str:
-        estimated = any(r.estimated for r in self.records)
-        return (
-            f"{len(self.records)} records, {self.points} values (of long records the means of neighbours);"
-            " the force and depth errors that the lab states, white from point to point"
-            + (" (where it states none, an error from the scatter of the record)" if estimated else "")
-            + "; first touch, off by the depth's error once a record; the simulation's mesh error: 1.1 %"
-            " common to all forces (twice that deeper than 1.5 radii), wandering by 0.5 % with the depth, by"
-            " more near the surface; the shear modulus free for each specimen."
-        )
+        return described_noise(self.records, self.points)
 
     def shown(self, k: int) -> Shown:
         """Force along the indenter of record `k`; rows across it, which follow, are not displayed."""
