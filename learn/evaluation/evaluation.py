@@ -87,8 +87,8 @@ class Evaluation:
     covered, across : coverage of intervals from the run's own validation part, and from the other folds.
     no_intervals : reason why a run has no intervals, by run.
     intervals : intervals of each run (or ensemble), from the other folds if there are enough.
-    by_name : folders of runs on another dataset, whose own is not where it was, so that shapes were told by
-        their names.
+    by_name : folders of runs on another dataset, whose own is not where it was, so that shapes were
+        identified by their names.
     clouds : metrics by point cloud; interpolation_mm: error of their interpolated truth [mm].
     depths, covers : metrics by model and band of depth, and of cover over the inclusion below the contact;
         one entry per fold.

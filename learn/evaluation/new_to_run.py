@@ -15,7 +15,7 @@ def parts_of(store: Store, run: Run) -> Split:
 
     That is inclusions in their blocks or, for a run that was split by site, contact points on these: those of
     its training and validation parts are not new. Where its dataset cannot be read any more (`trained_on`),
-    shapes are told by their names. InputError if nothing is new.
+    shapes are identified by their names. InputError if nothing is new.
     """
     if store.uuid == run.uuid:
         return split_of_run(store, run)

@@ -87,7 +87,7 @@ class DiceObjective:
         if belief.density is None:
             raise InputError(
                 f"experiment.yaml: materials.{belief.name}.density_kg_m3: expected, since a beam's shape"
-                " tells only the ratio of weight to stiffness"
+                " determines only the ratio of weight to stiffness"
             )
         self.trials = [t for t in trials if t.traced]
         if not self.trials:

@@ -111,8 +111,8 @@ class OutlineModel(MeasurementModel):
         for name in dict.fromkeys(t.material for t in self.trials):
             if experiment.materials[name].density is None:
                 raise InputError(
-                    f"experiment.yaml: materials.{name}.density_kg_m3: expected, since a beam's shape tells"
-                    " only the ratio of weight to stiffness"
+                    f"experiment.yaml: materials.{name}.density_kg_m3: expected, since a beam's shape"
+                    " determines only the ratio of weight to stiffness"
                 )
         self.experiment = experiment
         self.simulator, self.workers = simulator, workers

@@ -71,9 +71,9 @@ def draw_shapes(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figure:
         + ("." if apart else "; blue lines: the smooth part of their mean.")
         + (
             " Orange lines: the extended simulation, magnified alike. Where what was measured lies on"
-            " them and not on the grey body's edge, the extension says what the baseline lacks."
+            " them and not on the grey body's edge, the extension represents what the baseline lacks."
             if extended
-            else " Where that lies on the grey body's edge, the baseline says what was measured."
+            else " Where that lies on the grey body's edge, the baseline reproduces the measurement."
         )
         + left_out(missing),
         figure=figure,
