@@ -37,7 +37,7 @@ from calibration.measurements.homogeneous._forward import (
 )
 from calibration.measurements.homogeneous._point_sd import ASSUMED
 from calibration.measurements.homogeneous._record import Record, everything, protocol, records_of
-from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
+from calibration.measurements.homogeneous._richer import RicherLaw, start_of
 from calibration.measurements.homogeneous._sentences import assumed_errors, described_noise, remarks_on
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
@@ -126,16 +126,7 @@ class HomogeneousModel(MeasurementModel):
     def _take_richer(self, law: str, terms: int) -> None:
         """Add the constants of a richer law as extras; their centres are from a fit of each material."""
         form = parametrisation(law, terms=terms)
-        centres: dict[str, Array] = {}
-        self._rich_moduli: dict[str, float] = {}
-        for m in self.baseline.materials:
-            own = [r for r in self.records if r.material == m]
-            found = law_start(form, own, bulk_ratio=BULK_RATIO)
-            if found is None:
-                raise ValueError(f"{form.label}: no stress at the stretches of {m}")
-            moduli, centres[m] = found
-            self._rich_moduli |= moduli
-        self.richer = RicherLaw(law=form, centres=centres)
+        self.richer = RicherLaw.fitted(form, self.records, self.baseline.materials, bulk_ratio=BULK_RATIO)
         self.baseline = self._base.baseline = self.baseline.with_extras(self.richer.extras())
         self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
 
@@ -171,11 +162,12 @@ class HomogeneousModel(MeasurementModel):
         local steps from the baseline's.
         """
         u = state.u.copy()
-        for c in candidates if self.richer is not None else ():
-            if self.effects[c.effect].richer:
+        moduli = {} if self.richer is None else self.richer.shear_moduli
+        for c in candidates:
+            if moduli and self.effects[c.effect].richer:
                 for r, hit in zip(self.records, self.reached(c), strict=True):
                     if hit:
-                        u[self.baseline.specimens.index(r.specimen)] = np.log(self._rich_moduli[r.specimen])
+                        u[self.baseline.specimens.index(r.specimen)] = np.log(moduli[r.specimen])
         return replace(state, u=u)
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
