@@ -29,8 +29,8 @@ from calibration.pages import COLOURS, INK
 Array = NDArray[np.float64]
 
 Kind = Literal["loading", "unloading", "loading again"]
-SEEN = 0.03  # of a record's largest stress: a departure that shows between its curves
-DOTS = 12  # a branch, where what is left is drawn
+SEEN = 0.03  # fraction of a record's largest stress: a difference that is visible between its curves
+DOTS = 12  # points of a branch in the figure of residuals
 LOOK: dict[Kind, str] = {"loading": COLOURS[0], "unloading": COLOURS[1], "loading again": COLOURS[2]}
 _KPA = 1e-3
 UNIT = ("kPa", _KPA)
