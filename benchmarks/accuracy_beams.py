@@ -23,9 +23,10 @@ from typing import Any
 
 import numpy as np
 
+from tisim.material import Material
 from tisim.mesh import PAPER_LAYER, PAPER_RINGS
 from tisim.problems.beam.solve import solve_beam
-from tisim.scene import Beam, Material
+from tisim.scene import Beam
 
 FILE = Path(__file__).parent / "references" / "beams.json"
 MESHES = {"default": (2, 0.007), "fine": (4, 0.0035), "paper": (PAPER_RINGS, PAPER_LAYER)}  # rings, layer [m]

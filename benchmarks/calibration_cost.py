@@ -53,7 +53,10 @@ def candidate(experiment: Path, material: str, law: str, repeats: int = 5) -> fl
 
 def our_worst_error() -> float:
     """Worst error of the search's beams [%], over the three cases."""
-    scenes = [beam(c, "Neo-Hookean", MODULUS, rings=COARSE.rings, layer=COARSE.layer) for c in CASES]
+    scenes = [
+        beam(c, "Neo-Hookean", MODULUS, rings=COARSE.radial_elements, layer=COARSE.axial_element_size)
+        for c in CASES
+    ]
     results = tisim.simulate(scenes, workers=1)
     errors = [our_error(c, "Neo-Hookean", MODULUS, r) for c, r in zip(CASES, results, strict=True)]
     return max(errors, key=abs)

@@ -1,6 +1,8 @@
-"""Numerical rules that several packages share: lengths of polylines, correlated and robust errors."""
+"""Numerical rules that several packages share: lengths of polylines, correlated and robust errors, rms."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,3 +35,8 @@ def robust_sd(errors: Array, *, axis: int | None = None) -> Array:
     Outliers in fewer than half of the errors do not dominate it.
     """
     return np.asarray(_NORMAL * np.median(np.abs(errors), axis=axis))
+
+
+def rms_of(parts: Iterable[Array]) -> float:
+    """Root mean square of all values of some arrays."""
+    return float(np.sqrt(np.mean(np.concatenate([*parts]) ** 2)))

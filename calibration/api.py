@@ -116,7 +116,7 @@ def fit(
         Folder that keeps the fits, so that the same call goes on after an interruption; in memory where
         left out. `Fits.write_report` and `Fits.write_cards` write what people and the factory read.
     seed, population, generations, restarts : int
-        Of CMA-ES.
+        Options of CMA-ES.
     polish : bool
         Gauss-Newton polish and error bars.
     held_out : bool
@@ -188,15 +188,15 @@ def diagnose(
     simulator : str
         Simulator whose own faults are looked for as well.
     law : str
-        Of the baseline, where the kind has a choice: "auto" for the simplest one and, where no cause explains
-        the data beside it, the one that predicts best as a cause of its own; or a name, with the terms of a
-        series law ("ogden:2").
+        Law of the baseline, where the kind has a choice: "auto" for the simplest one and, where no cause
+        explains the data beside it, the one that predicts best as a cause of its own; or a name, with the
+        terms of a series law ("ogden:2").
     gain : bool
         Measure the improvement on held-out data.
     noise : str
         "stated", or "data" where the scatter of the data shall replace a stated noise that it contradicts.
     seed : int
-        Of the bootstrap.
+        Seed of the bootstrap.
     workers : int, optional
         Processes; all cores where left out.
     on_progress : callable, optional
@@ -271,14 +271,14 @@ def predict(
     domain : str, optional
         Kind of measurements: of the fit, where the experiment has several; the only one that cards predict.
     law : str
-        Of the baseline beside which a fit looks for causes, as in `diagnose`.
+        Law of the baseline beside which a fit looks for causes, as in `diagnose`.
     extend : str or sequence of str
         Effects of the extension beside `calibrate`, each in all trials, in place of a search for causes.
     specimen_scatter : float, optional
         Relative sd of the modulus from one specimen of a material to the next, where cards predict a named
         specimen: 0.15 where left out.
     seed : int
-        Of the diagnosis.
+        Seed of the diagnosis.
     workers : int, optional
         Processes; all cores where left out.
     on_progress : callable, optional

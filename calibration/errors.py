@@ -15,7 +15,7 @@ class OptionError(InputError):
     name : str
         Name of the argument.
     value : object
-        What was given; None leaves it out of the sentence.
+        Value that was given; None leaves it out of the sentence.
     expected : str
         The rest of the sentence.
     """

@@ -60,8 +60,10 @@ class FitPlan:
         return Fits(tuple(stopped(self.tasks, self.experiment)), self.experiment, self.folder)
 
     def with_earlier(self, found: Fits) -> Fits:
-        """These fits and, after them, those that earlier runs have finished in the folder, to the same data:
-        one card and one report have all laws."""
+        """These fits, followed by those to the same data that earlier runs have finished in the folder.
+
+        One card and one report then have all laws.
+        """
         from calibration.study import finished
 
         own = {own.name for task in self.tasks for own in (task, *task.alternatives)}

@@ -20,7 +20,7 @@ class Progress:
     Attributes
     ----------
     message : str
-        What has been done, or is being done now.
+        Step that was done, or is being done.
     done, total : int
         Pieces of work (fits, photographs) finished, and all of them; total is 0 where it is not known.
     """

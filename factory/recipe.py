@@ -19,19 +19,10 @@ from pydantic import (
 
 from factory._bundled import recipe_names, shipped_folder
 from factory._course import Piece, check_pieces, travel
+from factory._drawn_shapes import Sides, with_drawn_shapes
 from factory._errors import InputError
 from factory._input import Strict, read_yaml, validation_sentence
-from factory._shapes import (
-    Name,
-    Natural,
-    Positive,
-    Room,
-    Shape,
-    Sides,
-    Size,
-    of_its_kind,
-    with_drawn_shapes,
-)
+from factory._shapes import Name, Natural, Positive, Room, Shape, Size, of_its_kind
 from tisim import Rod
 from tisim.mesh.indentation import CLEARANCE
 

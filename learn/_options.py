@@ -1,17 +1,29 @@
-"""Options common to several of learn's commands."""
+"""Common code of learn's commands: their applications, and the options that several of them have.
+
+It imports nothing slow, so that `--help` is fast and needs no torch. Each command imports its modules when it
+runs.
+"""
 
 from __future__ import annotations
 
 import importlib.util
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from learn import __version__
 from learn.errors import InputError
+
+
+def single(command: Callable[..., Any], epilog: str) -> typer.Typer:
+    """Program of a single command, for `python -m learn.COMMAND`."""
+    program = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+    program.command(epilog=epilog)(command)
+    return program
 
 
 def load_plugins(files: list[Path]) -> None:

@@ -16,6 +16,7 @@ from .io.export import write
 from .io.picture import picture
 from .io.read import read
 from .laws import Moduli
+from .material import Material, material_from_moduli
 from .mesh import Mesh, surface_triangles
 from .parts import HolzapfelGasserOgden, OgdenRoxburgh, Prony
 from .problems.beam.rest_shape import rest_positions
@@ -26,13 +27,11 @@ from .scene import (
     ClampImperfections,
     Coupon,
     Imperfections,
-    Material,
     Poke,
     Press,
     Scene,
     Solver,
     Void,
-    material_from_moduli,
 )
 from .simulate import simulate
 from .view import show

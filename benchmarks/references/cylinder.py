@@ -7,15 +7,15 @@ from typing import Any
 import felupe as fe
 import numpy as np
 
+from benchmarks.references.quadrilaterals import with_middles
+
 Array = np.ndarray[Any, Any]
 
 
 def graded(count: int, strength: float) -> Array:
     """Corners and middles of `count` intervals of [0, 1], small near 0."""
     corners = np.expm1(strength * np.linspace(0, 1, count + 1)) / np.expm1(strength)
-    out = np.empty(2 * count + 1)
-    out[::2], out[1::2] = corners, (corners[1:] + corners[:-1]) / 2
-    return out
+    return with_middles(corners)
 
 
 def half_disc(level: int) -> list[Array]:

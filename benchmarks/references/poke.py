@@ -30,6 +30,7 @@ import numpy as np
 from benchmarks.references.cylinder import graded
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
 
 Array = np.ndarray[Any, Any]
@@ -43,10 +44,7 @@ def corners(knots: tuple[float, ...], counts: tuple[int, ...], level: int) -> Ar
     """Corners and middles of intervals cut evenly between the knots."""
     spans = zip(knots[:-1], knots[1:], counts, strict=True)
     ends = [np.linspace(a, b, n * level, endpoint=False) for a, b, n in spans]
-    c = np.append(np.concatenate(ends), knots[-1])
-    out = np.empty(2 * len(c) - 1)
-    out[::2], out[1::2] = c, (c[1:] + c[:-1]) / 2
-    return out
+    return with_middles(np.append(np.concatenate(ends), knots[-1]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,12 +75,7 @@ def disc(level: int, axis: int = 2) -> fe.Mesh:
     far = near[-1] + (RADIUS - near[-1]) * graded(8 * level, 4.0)
     radial = np.concatenate([near, far[1:]])
     axial = HEIGHT * (1 - graded(10 * level, 2.2))[::-1]
-    grid = np.stack(np.meshgrid(axial, radial, indexing="ij"), -1)
-    number = np.arange(grid[..., 0].size).reshape(grid.shape[:2])
-    reference = fe.BiQuadraticQuad().points.astype(int) + 1
-    n = number.shape
-    pick = [tuple(slice(o, n[k] - 2 + o, 2) for k, o in enumerate(p)) for p in reference]
-    return fe.Mesh(grid.reshape(-1, 2), np.stack([number[p].ravel() for p in pick], -1), "quad9")
+    return quadrilaterals(axial, radial)
 
 
 def poke(

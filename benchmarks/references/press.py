@@ -17,6 +17,7 @@ import numpy as np
 from benchmarks.references.cylinder import graded
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, mixed_fields
+from benchmarks.references.quadrilaterals import quadrilaterals
 
 Array = np.ndarray[Any, Any]
 
@@ -37,12 +38,7 @@ def meridian(height: float, level: int) -> fe.Mesh:
     """Upper half in (z, r), refined towards the platen's edge; 9-node quadrangles."""
     z = 0.5 * height * (1.0 - graded(6 * level, 3.0)[::-1])
     r = RADIUS * (1.0 - graded(8 * level, 3.0)[::-1])
-    grid = np.stack(np.meshgrid(z, r, indexing="ij"), -1)
-    number = np.arange(len(z) * len(r)).reshape(len(z), len(r))
-    offsets = fe.BiQuadraticQuad().points.astype(int) + 1
-    n, m = number.shape
-    cells = np.stack([number[i : n - 2 + i : 2, j : m - 2 + j : 2].ravel() for i, j in offsets], -1)
-    return fe.Mesh(grid.reshape(-1, 2), cells, "quad9")
+    return quadrilaterals(z, r)
 
 
 def press(height: float, ratio: float, law: str, parameters: dict[str, float], level: int) -> list[float]:

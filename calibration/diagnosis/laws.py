@@ -212,9 +212,9 @@ def _causes(found: Finding) -> int:
 def _better_round(
     first: Searched, again: Searched | None, richer: bool, *, gain: bool, on_progress: OnMessage
 ) -> tuple[MeasurementModel, Diagnosis]:
-    """What the rounds come to. Only what is said is concluded, where the search tells which round that is.
+    """Model and diagnosis of the better of two rounds; only this one is concluded if the search decides.
 
-    richer : the second round has a law that predicts better.
+    richer : True if the second round has a law that predicts better.
     """
 
     def conclude(one: Searched) -> Diagnosis:
@@ -234,7 +234,7 @@ def _better_round(
 
 
 def _explains(found: Diagnosis) -> int:
-    """How much a verdict says: nothing that explains, something in part, all."""
+    """Rank of a verdict: 0 explains nothing, 1 explains in part, 2 explains all."""
     verdict = found.finding.verdict
     return 2 if verdict in EXPLAINED else 0 if verdict == "unexplained" else 1
 

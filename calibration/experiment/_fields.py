@@ -54,8 +54,10 @@ class Strict(BaseModel):
 
 
 def expected_key(key: str, known: list[str]) -> str:
-    """What a key that is not known was meant to be: the same quantity in the unit that files hold, else the
-    nearest in spelling, else all that there are."""
+    """Suggestion for an unknown key.
+
+    It is the same quantity in the unit of the format, else the key nearest in spelling, else all known keys.
+    """
     stem = _stem(key)
     for name in known:
         if _stem(name) == stem:

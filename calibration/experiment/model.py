@@ -50,9 +50,9 @@ class Registration:
     Attributes
     ----------
     shift : float
-        Of x and of z [m].
+        Standard deviation of the shift along x and along z [m].
     roll : float
-        About the frame's origin [rad].
+        Standard deviation of the rotation about the frame's origin [rad].
     scale : float
     """
 
@@ -78,7 +78,7 @@ class TracedOutline:
     upper, lower : array, shape (k, 2)
         x, z of the edges [m], along the beam from the clamp.
     sd : float
-        Of the error along the normal [m].
+        Standard deviation of the error along the normal [m].
     correlation : float
         Length over which that error holds along the contour [m].
     registration : Registration
@@ -161,13 +161,13 @@ class BeamTrial:
     specimen : str, optional
         Trials of one specimen share its faults.
     section_sd : tuple of float
-        Of the radius, or of (width, height) [m].
+        Standard deviation of the radius, or of (width, height) [m].
     free_length_sd : float
         [m]
     captures : tuple of Capture
     markers : tuple of Marker
     marker_sd : float, optional
-        Of each component of a marker's displacement [m].
+        Standard deviation of each component of a marker's displacement [m].
     """
 
     id: str
@@ -221,7 +221,7 @@ class SurfaceScan:
     points : array, shape (k, 3)
         [m]
     sd : float
-        Of each coordinate [m].
+        Standard deviation of each coordinate [m].
     """
 
     time: float
@@ -238,7 +238,7 @@ class PokeTrial:
     id, material : str
     block : tisim.Block
     rod_radius : float
-        Of the indenter [m].
+        Radius of the indenter [m].
     rod_tip : str
         "flat" or "hemisphere".
     start : tuple

@@ -71,7 +71,8 @@ def polish(
     settled : float
         Where no step finds what it promises, so much still counts as converged: the default is 0.6 sd.
     difference : float
-        Of the central differences, in each coordinate's spread; smaller ones drown in the solver's tolerance.
+        Step of the central differences, in each coordinate's spread; the error of smaller ones is dominated
+        by the solver's tolerance.
 
     Raises
     ------

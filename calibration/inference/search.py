@@ -165,7 +165,7 @@ def search(
         Mean and standard deviations of the first generation.
     options : CmaOptions
     history : sequence of Generation
-        Of an earlier run of the same search; it is replayed without a simulation.
+        Generations of an earlier run of the same search; they are replayed without a simulation.
     known : float
         Cost of the point where a descent ended; infinite without one.
     on_progress : callable

@@ -35,7 +35,7 @@ class Estimate:
     Attributes
     ----------
     name, unit : str
-        Of the search coordinate; the unit is that of its value.
+        Name of the search coordinate, and unit of its value.
     value, low, high : float
         Value and 95 % interval, SI.
     sd : float
@@ -65,7 +65,7 @@ class Identification:
     ----------
     estimates : tuple of Estimate
     covariance : array, shape (n, n)
-        Of u, with the priors, scaled up where the fit is worse than the noise.
+        Covariance of u, with the priors, scaled up where the fit is worse than the noise.
     of_intervals : array, shape (n, n)
         Covariance of which 1.96 standard deviations are the 95 % intervals: larger where these have Student's
         t, else the same.
@@ -74,7 +74,7 @@ class Identification:
     blind : tuple of dict
         Directions that the data alone do not determine, as {coordinate: weight}.
     shear_modulus_sd : float
-        Of the small-strain shear modulus [Pa].
+        Standard deviation of the small-strain shear modulus [Pa].
     """
 
     estimates: tuple[Estimate, ...]
@@ -98,7 +98,7 @@ def identify(
     parametrisation : Parametrisation
     u : array, shape (n,)
     jacobian : array, shape (m, n)
-        Of the whitened residuals, the prior's rows last.
+        Jacobian of the whitened residuals, the prior's rows last.
     reduced_chi2 : float
     """
     _, prior_sd = parametrisation.prior()
@@ -132,9 +132,9 @@ def with_prior_sd(
     Parameters
     ----------
     known : Identification
-        Of the fit with the coordinate held (`Parametrisation.holding`).
+        Result of the fit with the coordinate held (`Parametrisation.holding`).
     parametrisation : Parametrisation
-        With the coordinate's own prior.
+        Parametrisation with the coordinate's own prior.
     u : array, shape (n,)
     name : str
         The coordinate.

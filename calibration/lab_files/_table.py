@@ -50,7 +50,7 @@ class Column:
         Name as the file has it, without its unit.
     unit : Unit, optional
     quantity : str, optional
-        What it holds, where its name and unit say so.
+        Quantity of the column, if its name and unit state it.
     cells : tuple of str
     """
 
@@ -68,14 +68,14 @@ class LabTest:
     ----------
     file : LabFile
     name : str
-        Of the sheet, step or block; "" where the file holds one.
+        Name of the sheet, step or block; "" if the file has one only.
     columns : tuple of Column
     rows : tuple of int
         Line of each row of numbers.
     parameters : mapping
-        What is written above the numbers: text by name.
+        Text above the numbers, by name.
     sheet : str
-        Of a workbook, for messages.
+        Name of the sheet of a workbook, for messages.
     """
 
     file: LabFile

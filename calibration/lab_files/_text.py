@@ -191,9 +191,9 @@ def decimals_of(
     cells : sequence of str
         Cells of numbers.
     stated : {"point", "comma"}, optional
-        What the lab says of it.
+        Decimal separator that the lab states.
     separator : str
-        Of the columns: a semicolon is that of a language whose decimals have a comma.
+        Separator of the columns: a semicolon is that of a language whose decimals have a comma.
 
     Raises
     ------

@@ -16,11 +16,11 @@ class Unit:
     Attributes
     ----------
     text : str
-        As it is written.
+        Unit as it is written.
     dimension : str
-        What it measures; "other" is known as a unit, and of no use here.
+        Quantity that it measures; "other" for a known unit of no use here.
     factor : float
-        To SI: s, m, N, 1, Pa, m2.
+        One unit in SI (s, m, N, 1, Pa, m2).
     """
 
     text: str

@@ -6,7 +6,7 @@ coordinates of that law (`calibration.parameters`), one material for all its spe
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
@@ -315,3 +315,32 @@ def mean_moduli(materials: Sequence[str], u: Array) -> dict[str, float]:
     for m, value in zip(materials, u, strict=True):
         found.setdefault(m, []).append(float(value))
     return {m: float(np.exp(np.mean(v))) for m, v in found.items()}
+
+
+def least_squares_moduli(
+    curves: Iterable[tuple[str, Array, Array]], *, specimens: Sequence[str], falling: str
+) -> dict[str, float]:
+    """Least-squares shear modulus of each specimen [Pa], for a response that is proportional to it.
+
+    Parameters
+    ----------
+    curves : for each record its specimen, the response for a unit modulus, and the measured one, shape (k,);
+        both over the standard deviation, if points differ in it.
+    specimens : names of the specimens; records of others do not count.
+    falling : start of the sentence on a specimen for which no modulus is positive.
+
+    Raises
+    ------
+    ValueError
+        If the modulus of a specimen would not be positive.
+    """
+    top, bottom = dict.fromkeys(specimens, 0.0), dict.fromkeys(specimens, 0.0)
+    for specimen, unit, measured in curves:
+        if specimen not in top:
+            continue
+        top[specimen] += float(unit @ measured)
+        bottom[specimen] += float(unit @ unit)
+    for name in specimens:
+        if not top[name] > 0.0:
+            raise ValueError(f"specimen {name}: {falling}, no shear modulus gives that")
+    return {name: top[name] / bottom[name] for name in specimens}

@@ -19,7 +19,7 @@ ObjectiveName = Literal["likelihood", "dice"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FitContext:
-    """What a fit uses in all kinds of measurement.
+    """Options of a fit that all kinds of measurement use.
 
     Attributes
     ----------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,15 @@ def fifths(points: int) -> list[str]:
     """Fold label of each point of a record: the fifth of the record that it is in."""
     parts = np.array_split(np.arange(points), PARTS)
     return [f"part {n + 1} of each record" for n, part in enumerate(parts) for _ in part]
+
+
+def joined(each: Iterable[Mapping[str, Sequence[str]]]) -> dict[str, list[str]]:
+    """Fold labels of all rows by set of folds, from those of each block of rows, in their order."""
+    found: dict[str, list[str]] = {}
+    for block in each:
+        for name, labels in block.items():
+            found.setdefault(name, []).extend(labels)
+    return found
 
 
 def folds_of(labels: Mapping[str, Sequence[str]]) -> dict[str, list[tuple[str, Rows]]]:

@@ -161,8 +161,7 @@ def build(
 def contribution(
     kind: Kind, own: Experiment, context: FitContext, objective: ObjectiveName = "likelihood"
 ) -> Contribution | None:
-    """What a kind brings to a fit of an experiment of its trials of one material; None if it has no such
-    objective."""
+    """Objective of a kind, for a fit of its trials of one material; None if it has no such objective."""
     if objective in kind.objectives:
         return kind.objectives[objective]()(own, context)
     if objective != "likelihood":
@@ -207,11 +206,11 @@ def _marked(experiment: Experiment) -> list[Trial]:
     return [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
 
 
-def _all_swing(experiment: Experiment) -> bool:
-    from calibration.measurements.release._record import not_swinging
+def _all_recorded(experiment: Experiment) -> bool:
+    from calibration.measurements.release._record import why_no_record
 
     beams = [t for t in experiment.trials if isinstance(t, BeamTrial) and t.markers]
-    return not any(not_swinging(t, experiment) for t in beams)
+    return not any(why_no_record(t, experiment) for t in beams)
 
 
 def _pushed(experiment: Experiment) -> list[Trial]:
@@ -292,7 +291,7 @@ register(
         old_name="bars",
         compares=_marked,
         objectives={"likelihood": _late("release.contribution", "likelihood")},
-        whole=_all_swing,
+        whole=_all_recorded,
         over_time=_late("release.over_time", "OVER_TIME"),
     )
 )

@@ -222,14 +222,19 @@ class MeasurementModel(NoisyModel):
         """Mask (n,) of the coordinates u that a record constrains: all of its material's, without extras."""
         return self.baseline.informed_by(record, whole_material=True)
 
+    def _solved_misfit(self, state: State) -> Array:
+        """Simulated minus measured at a state [SI], shape (rows,). ValueError if it has no solution."""
+        misfit = self._misfit([state])[0]
+        if not np.isfinite(misfit[self.noise.used]).all():
+            raise ValueError(self.no_answer)
+        return misfit
+
     def distance_rms(self, state: State) -> float:
         """Root mean square of simulated minus measured [SI], after removal of the most likely nuisances.
 
         ValueError if the state has no solution.
         """
-        misfit = self._misfit([state])[0]
-        if not np.isfinite(misfit[self.noise.used]).all():
-            raise ValueError(self.no_answer)
+        misfit = self._solved_misfit(state)
         left = self.noise.remove(misfit)[self.noise.used]
         return float(np.sqrt(left @ left / self._measured_points()))
 
@@ -246,9 +251,7 @@ class MeasurementModel(NoisyModel):
 
         NaN in rows that are not compared. ValueError if the state has no solution.
         """
-        misfit = self._misfit([state])[0]
-        if not np.isfinite(misfit[self.noise.used]).all():
-            raise ValueError(self.no_answer)
+        misfit = self._solved_misfit(state)
         left = np.where(self.noise.used, self.noise.remove(misfit), np.nan)
         return [left[self.row_record == k] for k in range(len(self.records))]
 
@@ -257,9 +260,7 @@ class MeasurementModel(NoisyModel):
 
         ValueError if the state has no solution.
         """
-        misfit = self._misfit([state])[0]
-        if not np.isfinite(misfit[self.noise.used]).all():
-            raise ValueError(self.no_answer)
+        misfit = self._solved_misfit(state)
         values = self.noise.estimate(misfit)
         return {name: float(b) for name, b in zip(self.noise.names, values, strict=False) if name}
 

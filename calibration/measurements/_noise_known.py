@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration._numerics import robust_sd
-from calibration.measurements._layers import Layers
+from calibration.measurements._variance_components import VarianceComponents
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ class NoiseKnown:
     dof : degrees of freedom of the noise estimate; inf if it is taken as known.
     points : noise of each record from point to point.
     repeats : names of the tests whose repeats determine the scatter between tests.
-    layers : variance components from repeats, if the kind of measurement has no model of its own for them.
+    components : variance components from repeats, if the kind of measurement has no own model of them.
     unit : unit of rms residuals in files, and the number of these units per SI unit.
     """
 
@@ -79,7 +79,7 @@ class NoiseKnown:
     dof: float = inf
     points: tuple[PointNoise, ...] = ()
     repeats: tuple[str, ...] = ()
-    layers: Layers = field(default_factory=Layers)
+    components: VarianceComponents = field(default_factory=VarianceComponents)
     unit: tuple[str, float] = ("", 1.0)
 
     @property
@@ -114,11 +114,11 @@ class NoiseKnown:
                 f"the data scatter by {text} than the lab states in {len(off)} of {len(self.points)} records:"
                 f" {shown:.2g} {name} from point to point, stated {stated:.2g} {name} ({used})"
             )
-        found += self.layers.sentences()
+        found += self.components.sentences()
         if not self.known:
             found.append(
                 "the noise is not known: the lab does not state it, and no test was repeated often enough to"
-                " show it. Shares and chances hold for what was assumed"
+                " show it. Explained fractions and p-values hold for the assumed noise"
             )
         return found
 
@@ -128,7 +128,7 @@ class NoiseKnown:
             "source": self.source,
             "known": self.known,
             "repeats": list(self.repeats),
-            "layers": self.layers.to_json(),
+            "layers": self.components.to_json(),
             "records": [
                 {
                     "record": p.record,

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.measurements._forward_model import ForwardModel
-from calibration.measurements._layers import Curve, Layers, deviations, layers_of
 from calibration.measurements._noise_known import (
     FEWEST,
     POINTS_PER_FREEDOM,
@@ -26,6 +25,12 @@ from calibration.measurements._noise_known import (
     roughness,
 )
 from calibration.measurements._state import State
+from calibration.measurements._variance_components import (
+    Curve,
+    VarianceComponents,
+    deviations,
+    variance_components,
+)
 
 Array = NDArray[np.float64]
 
@@ -124,24 +129,28 @@ class NoisyModel(ForwardModel):
     def settle_noise(self, source: Source) -> NoiseKnown:
         """Complete `noise` before the search, and return its summary; to be called once.
 
-        The scatter between repeats (`layers_of`) is estimated and added as nuisances, if the kind has no
-        repeats of its own, no nuisances and no correlated rows. With repeats, records whose noise is not
-        stated get the standard deviation that they show together (`_shown_together`). With
-        source "data", records whose scatter contradicts the stated noise get the one that each shows.
+        The scatter between repeats (`variance_components`) is estimated and added as nuisances, if the kind
+        has no repeats of its own, no nuisances and no correlated rows. With repeats, records whose noise is
+        not stated get the standard deviation that they show together (`_shown_together`). With source "data",
+        records whose scatter contradicts the stated noise get the one that each shows.
         """
         stated = all(self.states_noise(k) for k in range(len(self.records)))
-        repeats, layers = self.repeated(), Layers()
+        repeats, components = self.repeated(), VarianceComponents()
         points = tuple(self.point_noise())
         if not repeats and not self.noise.columns.shape[1] and self.noise.covariance is None:
             shown = self._shown_together(points)
-            layers = layers_of(self._curves(shown))
-            repeats = layers.repeats
+            components = variance_components(self._curves(shown))
+            repeats = components.repeats
             if repeats:
                 self._rescale(shown)
                 points = tuple(replace(p, assumed=p.assumed * shown.get(p.record, 1.0)) for p in points)
-            self._take_scatter(layers)
+            self._take_scatter(components)
         known = NoiseKnown(
-            known=stated or bool(repeats), points=points, repeats=repeats, layers=layers, unit=self.unit
+            known=stated or bool(repeats),
+            points=points,
+            repeats=repeats,
+            components=components,
+            unit=self.unit,
         )
         if source == "stated":
             return known
@@ -157,9 +166,9 @@ class NoisyModel(ForwardModel):
         What they show together is the noise of all records of their tests. Their own deviation is estimated
         with the fit of a record; a predicted record is off by it.
         """
-        if known.layers.repeats:
+        if known.components.repeats:
             self._rescale(self._shown_together(known.points))
-        self._take_scatter(known.layers, predicted=predicted)
+        self._take_scatter(known.components, predicted=predicted)
 
     def _shown_together(self, points: Sequence[PointNoise]) -> dict[str, float]:
         """Factors on the standard deviation of records whose noise is not stated, by name: one noise a test.
@@ -194,15 +203,15 @@ class NoisyModel(ForwardModel):
         by_record = np.array([factors.get(str(r.name), 1.0) for r in self.records])
         self.noise = replace(self.noise, sd=self.noise.sd * by_record[self.row_record])
 
-    def _take_scatter(self, layers: Layers, *, predicted: bool = False) -> None:
+    def _take_scatter(self, components: VarianceComponents, *, predicted: bool = False) -> None:
         """Add the scatter between repeats to `noise`: as nuisances, or to the standard deviation."""
-        if not layers.repeat:
+        if not components.repeat:
             return
         columns = []
-        for k, bends in enumerate(deviations(self._curves({}), layers.expected)):
-            for bend in bends:
+        for k, own in enumerate(deviations(self._curves({}), components.expected)):
+            for deviation in own:
                 columns.append(np.zeros(len(self.row_record)))
-                columns[-1][self.row_record == k] = bend
+                columns[-1][self.row_record == k] = deviation
         if predicted:
             sd = np.sqrt(self.noise.sd**2 + np.sum(np.square(columns), axis=0))
             self.noise = replace(self.noise, sd=sd)

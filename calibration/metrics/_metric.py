@@ -23,11 +23,11 @@ class Metric:
     name : str
         Its key in `compare`.
     title : str
-        For tables.
+        Heading in tables.
     unit : str
-        Of its value: "m" or "1" (a ratio).
+        Unit of its value: "m" or "1" (a ratio).
     higher_is_better : bool
-        A perfect match is its largest value.
+        True if a perfect match has the largest value.
     compute : callable
         (simulated, measured) -> value; closed surfaces in m, faces outward.
     """

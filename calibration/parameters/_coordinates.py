@@ -91,7 +91,7 @@ class Parametrisation:
     assemble : callable
         Values by coordinate name -> the law's parameters.
     parts : tuple of PartCoordinates
-        What the material has beside the law; their coordinates are the last ones.
+        Parts of the material beside the law; their coordinates are the last ones.
     """
 
     law: str
@@ -160,7 +160,7 @@ class Parametrisation:
         return replace(self, parts=(), coordinates=tuple(c for c in self.coordinates if c.name not in beside))
 
     def remarks(self, u: ArrayLike) -> list[str]:
-        """What a reader must know of the parts at u, and what the tests cannot show, a sentence each."""
+        """Sentences on the parts at u, and on what the tests cannot show of them."""
         values, moduli = self.values(u), self.moduli(u)
         return [sentence for p in self.parts for sentence in p.remarks(values, moduli)]
 

@@ -19,7 +19,7 @@ Option = Literal["time", "damage", "fibres"]
 
 @dataclass(frozen=True, kw_only=True)
 class ProtocolWindow:
-    """What the courses of a material's tests can show of its parts.
+    """Times and peak strains of a material's tests, which limit what they show of its parts.
 
     Attributes
     ----------
@@ -46,9 +46,9 @@ class PartCoordinates:
     label : str
         In tables and file names ("prony-2").
     field : str
-        Of `tisim.Material` ("viscosity", "softening").
+        Field of `tisim.Material` ("viscosity", "softening").
     window : ProtocolWindow
-        What it was made for.
+        Times and peak strains of the tests that it was made for.
     coordinates : tuple of Coordinate
     assemble : callable
         Values by coordinate name -> the part; ValueError where it refuses them.
@@ -96,11 +96,11 @@ class PartKind:
     Attributes
     ----------
     name : str
-        Before the colon.
+        Text before the colon.
     option : str
-        Of a fit that asks for it.
+        Option of a fit that requests it.
     usage : str
-        What may be given, for help and errors ("prony, prony:1, ...").
+        Values that may be given, for help and errors ("prony, prony:1, ...").
     make : callable
         Argument after the colon ("" without one) and window -> `PartCoordinates`; ValueError, in one
         sentence, for an argument that it does not take.

@@ -36,7 +36,7 @@ class Board:
     blur : float
         Width of the edges, 10 to 90 % [px].
     size : tuple of int
-        Of the photograph, (width, height) [px].
+        Size of the photograph, (width, height) [px].
     """
 
     corners: Array

@@ -41,7 +41,7 @@ class Camera:
     k1, k2 : float
         Radial distortion (Brown).
     noise : float
-        Of one coordinate of a corner [px].
+        Standard deviation of one coordinate of a corner [px].
     views : int
         Photographs that it was calibrated on.
     """

@@ -127,8 +127,13 @@ class Plan:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clamp:
-    """Where the silhouette of a clamp ends, x in the board frame on the specimen's plane [m]; the clamp's and
-    the beam's extent in z there [m]."""
+    """End of a clamp's silhouette in the board frame, on the specimen's plane.
+
+    Attributes
+    ----------
+    x : position of the end [m].
+    clamp_z, beam_z : extent of the clamp and of the beam in z there [m].
+    """
 
     x: float
     clamp_z: tuple[float, float]

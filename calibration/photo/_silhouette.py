@@ -63,8 +63,10 @@ def unproject(view: View, pixels: Array, section: Section, *, plane: float, side
 def end_face(
     view: View, section: Section, *, plane: float, axis_end: Array, tangent: Array, across: Array
 ) -> Array:
-    """How far the end face at `axis_end` is seen to reach along `tangent` in the plane y = `plane`,
-    at positions `across` (k,) [m] from the axis: (k,) [m], from axis_end."""
+    """Visible extent of the end face at `axis_end` along `tangent` in the plane y = `plane` [m], shape (k,).
+
+    It is measured from `axis_end`, at positions `across` (k,) [m] from the axis.
+    """
     turn = np.linspace(0.0, 2 * np.pi, 721)[:-1]
     if isinstance(section, tisim.Circle):
         ring = section.radius * np.column_stack([np.cos(turn), np.sin(turn)])

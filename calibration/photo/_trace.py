@@ -136,7 +136,7 @@ class Specimen:
     ----------
     section : tisim.Circle or tisim.Rectangle
     section_sd : float
-        Of its height [m].
+        Standard deviation of its height [m].
     free_length : float
         [m]
     supports : str
@@ -157,15 +157,15 @@ class Trace:
     outline : TracedOutline
         In the specimen's frame, with its uncertainty.
     metres_per_pixel : float
-        At the specimen.
+        Scale at the specimen.
     tilt : float
-        Of the camera to the board [rad].
+        Angle of the camera's axis to the board's normal [rad].
     camera_distance : float
-        To the specimen's plane [m].
+        Distance to the specimen's plane [m].
     diameter : float
-        As measured in the photograph [m].
+        Diameter as measured in the photograph [m].
     corner_noise : float
-        Of the board's corners about the camera's model [px].
+        Standard deviation of the board's corners about the camera's model [px].
     focal : float
         Focal length [px].
     origin : tuple

@@ -135,7 +135,7 @@ class CardFile(BaseModel):
 
     @property
     def origin(self) -> FittedTo | None:
-        """What it was fitted to; of an earlier card as its provenance says it, None where it does not."""
+        """Experiment that the card was fitted to; for an earlier card from its provenance, None without."""
         found = _FITTED_TO.search(str(self.provenance or ""))
         if self.fitted_to is not None or found is None:
             return self.fitted_to
@@ -359,7 +359,7 @@ def scaled_part(field: str, part: Part, *, free: bool) -> PartCoordinates:
 
 
 def _relative_sd(card: CardFile, field: str) -> float | None:
-    """Of a part's size, from the effect that it was."""
+    """Relative standard deviation of a part's size, from the effect that it represents."""
     for e in card.effects:
         if e.becomes == field:
             amplitude = next(iter(e.parameters.values()))

@@ -139,7 +139,10 @@ def predict_records(
 
 
 def _predicted(model: MeasurementModel, known: Calibrated, some: Sequence[int]) -> dict[int, PredictedRecord]:
-    """Of records by index: simulated less measured in place of the value."""
+    """Records by index, with simulated minus measured in place of the predicted value.
+
+    ValueError if the model has no solution.
+    """
     model.update_nuisances(known.state)
     misfit, slopes = model.sensitivities(known.state, known.candidates)
     used = model.noise.used
@@ -176,7 +179,7 @@ def _predicted(model: MeasurementModel, known: Calibrated, some: Sequence[int]) 
 def _with_choice(
     chosen: dict[int, PredictedRecord], others: Sequence[dict[int, PredictedRecord]]
 ) -> dict[int, PredictedRecord]:
-    """With the spread of n models that are as likely about the one that was chosen, which is one of them."""
+    """Predicted records of the chosen model, with the spread of all equally likely models about it."""
     found = {}
     for k, own in chosen.items():
         squares = [(other[k].value - own.value) ** 2 for other in others]

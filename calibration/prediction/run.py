@@ -11,6 +11,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import rms_of
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment
 from calibration.inference import WIDTH
@@ -81,12 +82,12 @@ class Prediction:
         return found
 
     def rms(self, records: Sequence[Record], model: str) -> float:
-        """Of predicted less measured over the records' points [SI]."""
-        return _rms(np.concatenate([r.error(model) for r in records]))
+        """Root mean square of predicted minus measured over the records' points [SI]."""
+        return rms_of(r.error(model) for r in records)
 
     def noise(self, records: Sequence[Record]) -> float:
         """Expected `rms` of noise alone [SI]."""
-        return _rms(np.concatenate([r.sd(self.models[-1], "noise") for r in records]))
+        return rms_of(r.sd(self.models[-1], "noise") for r in records)
 
     def skill(self, records: Sequence[Record]) -> float | None:
         """(rms_base^2 - rms_ext^2) / (rms_base^2 - rms_noise^2): the fraction of what the baseline gets wrong
@@ -127,10 +128,6 @@ class Prediction:
 
 def _named(model: str, label: str) -> str:
     return "" if label == model else f" ({label})"
-
-
-def _rms(x: Array) -> float:
-    return float(np.sqrt(np.mean(x**2)))
 
 
 def from_cards(
@@ -297,7 +294,7 @@ BEYOND = 0.02  # of a range that was fitted: a prediction further outside is sai
 
 
 def beyond(name: str, seen: Sequence[float], here: Sequence[float]) -> list[str]:
-    """What is predicted of a quantity outside of where it was measured (`seen`): one text, or none."""
+    """A text if a quantity is predicted outside the range in which it was fitted (`seen`); else empty."""
     if not here:
         return []
     low, high, slack = min(seen), max(seen), BEYOND * (max(seen) - min(seen))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from calibration._numerics import rms_of
 from calibration.inference import LEVEL, WIDTH
 from calibration.prediction._interval import SOURCES, Record
 from calibration.prediction.run import EXTENDED, Prediction
@@ -164,10 +165,7 @@ def _scores(found: Prediction, records: list[Record]) -> dict[str, Any]:
             m: Score(
                 rms=per_si * found.rms(records, m),
                 coverage=found.coverage(records, m),
-                sd={
-                    s: per_si * float(np.sqrt(np.mean(np.concatenate([r.sd(m, s) for r in records]) ** 2)))
-                    for s in SOURCES
-                },
+                sd={s: per_si * rms_of(r.sd(m, s) for r in records) for s in SOURCES},
             )
             for m in found.models
         },
@@ -201,7 +199,7 @@ def _record(found: Prediction, r: Record) -> RecordEntry:
 
 
 def _plain(values: Array, r: Record) -> list[float]:
-    """Of the points that are compared, to six digits."""
+    """Values of the points that are compared, to six digits."""
     return [float(f"{v:.6g}") for v in values[r.used]]
 
 

@@ -162,7 +162,7 @@ def _searched(make: Make, *, law: str, seed: int, on_progress: OnMessage) -> _Fi
 
 
 def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMessage) -> _Fitted:
-    """With the effects that are asked for, each in all trials that can have it, in its best variant."""
+    """Fit with the requested effects, each in all trials that can have it, in its best variant."""
     from calibration.diagnosis.catalogue import true_name
     from calibration.diagnosis.laws import AUTO, law_of
 
@@ -307,8 +307,11 @@ def _extrapolations(model: MeasurementModel, fold: Rows) -> list[str]:
 
 
 def _calibrated(model: MeasurementModel, fold: Rows, found: Fit, name: str) -> Calibrated:
-    """What a fit to all rows but a fold's knows. Where it leaves more than noise, its covariance is wider by
-    the reduced chi-square; what specimens of a material may differ by is not."""
+    """Result of a fit to all rows but those of a fold.
+
+    If it leaves more than noise, its covariance is scaled by the reduced chi-square, but not the scatter
+    between specimens of a material.
+    """
     jacobian = found.jacobian
     specimens = of_unseen(model, fold, jacobian)
     used = int(np.count_nonzero(np.linalg.norm(jacobian, axis=0)))

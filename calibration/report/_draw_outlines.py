@@ -24,12 +24,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnEdge:
-    """One edge of a photograph, k points: traced (k, 2); foot of each on the simulated edge (k, 2), with unit
-    normal (k, 2); raw and left (k,): distance along it as traced and once nuisances are taken out, the mesh's
-    error corrected in both; along (k,): distance from the clamp along the traced edge."""
+    """One traced edge of a photograph and its distances from the simulated edge.
+
+    Attributes
+    ----------
+    traced : the points, shape (k, 2).
+    nearest, normal : their projections onto the simulated edge, and its unit normals there, shape (k, 2).
+    raw, left : distance along the normal as traced, and without the most likely nuisances, both corrected for
+        the mesh error, shape (k,).
+    along : distance of the points from the clamp along the traced edge, shape (k,).
+    """
 
     traced: Array
-    foot: Array
+    nearest: Array
     normal: Array
     raw: Array
     left: Array
@@ -94,14 +101,14 @@ def contours(outlines: ModelObjective[OutlineModel], chosen: Calibration) -> Dra
         upper, lower = (
             DrawnEdge(
                 traced=traced,
-                foot=f.foot,
+                nearest=f.nearest,
                 normal=f.normal,
                 raw=s.raw[part],
                 left=s.left[part],
                 along=traced[0, 0] + arc_length(traced),
             )
             for traced, f, part in zip(
-                (p.outline.upper, p.outline.lower), s.feet, (slice(n), slice(n, None)), strict=True
+                (p.outline.upper, p.outline.lower), s.projections, (slice(n), slice(n, None)), strict=True
             )
         )
         photographs.append(
@@ -197,12 +204,12 @@ def _panel(axes: Any, p: DrawnPhotograph) -> None:
 
 def _photograph(true: Any, magnified: Any, p: DrawnPhotograph, colour: str, factor: float) -> None:
     for k, edge in enumerate(p.edges):
-        every = max(1, len(edge.foot) // 40)
-        at = 1e3 * (edge.foot + edge.left[:, None] * edge.normal)
+        every = max(1, len(edge.nearest) // 40)
+        at = 1e3 * (edge.nearest + edge.left[:, None] * edge.normal)
         true.plot(*(1e3 * edge.traced[::every]).T, "x", ms=3, mew=0.5, color=FAINT, zorder=1)
         text = f"traced, {p.name.removeprefix(p.trial + ' ')}" if k == 0 else None
         true.plot(*at[::every].T, "o", ms=2.2, color=colour, label=text, zorder=3)
-        moved = 1e3 * (edge.foot + factor * edge.left[:, None] * edge.normal)
+        moved = 1e3 * (edge.nearest + factor * edge.left[:, None] * edge.normal)
         magnified.plot(*moved.T, "-", lw=1.0, color=colour)
 
 

@@ -23,13 +23,15 @@ Coupon = tuple[CouponTrial, Record]  # a homogeneous test, and its points as a f
 
 
 def material_of(result: Calibration) -> Material:
-    """As a simulation takes it; coupons do not see the density."""
+    """Material of a fit for a simulation; homogeneous tests do not depend on the density."""
     return result.simulated()
 
 
 def coupon_errors(coupon: Coupon, results: Sequence[Calibration]) -> Mapping[str, float]:
-    """rms error of each law over the points that a fit compares [% of their largest stress]; NaN without an
-    answer."""
+    """rms error of each law over the points that a fit compares [% of their largest stress].
+
+    NaN without a solution.
+    """
     _, record = coupon
     largest = float(np.abs(record.stress).max(initial=0.0))
     if not largest:

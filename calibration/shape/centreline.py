@@ -30,7 +30,7 @@ class Centreline:
     points : array, shape (k, 2)
         x and z [m].
     angle : array, shape (k,)
-        Of the tangent against x, positive upwards [rad].
+        Slope angle of the tangent against x, positive upwards [rad].
     sd : array, shape (k,), optional
         Standard deviation along the line's normal [m], from the tracing error alone (the photograph's
         registration moves the line as a whole and is not in it).

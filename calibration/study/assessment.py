@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from calibration.study.calibration import Calibration
 
 NEAR = 1e-3  # of a coordinate's range: so near to a bound counts as being there
-PRESSED = 1.0  # chi-square that a step over the bound would gain
+LEAST_GAIN = 1.0  # improvement of chi-square by a step over a bound, from which the data ask for it
 FROM_PRIOR = 3.0  # sd: chance leads there in 0.3 % of fits
-CHANCE = 1e-3  # of nuisances: a p-value below is not left to chance
+LEAST_P = 1e-3  # p-value of the nuisances, below which they count as a lack of fit
 NOISE_OFF = 1.5  # reduced chi-square that a noise sd stated 20 % too small explains
 
 NAMES = {
@@ -56,16 +56,16 @@ def at_bounds(
     u : array, shape (n,)
     gains : array, shape (n,), optional
         Chi-square that a free step of each coordinate alone would gain (`step_gains`). With it, a bound
-        counts only where the data press against it (a gain above `PRESSED`); a constant that they do not see
-        may end anywhere.
+        counts only where the data press against it (a gain above `LEAST_GAIN`); a constant that they do not
+        see may end anywhere.
     """
     found = {}
-    pressed = np.full(len(parametrisation.coordinates), np.inf) if gains is None else np.asarray(gains)
+    improvements = np.full(len(parametrisation.coordinates), np.inf) if gains is None else np.asarray(gains)
     for c, x, (low, high), gain in zip(
-        parametrisation.coordinates, np.asarray(u, float), parametrisation.bounds, pressed, strict=True
+        parametrisation.coordinates, np.asarray(u, float), parametrisation.bounds, improvements, strict=True
     ):
         near = NEAR * (high - low)
-        if gain < PRESSED or c.held:
+        if gain < LEAST_GAIN or c.held:
             continue
         if x - low < near and not c.limit_low:
             found[c.name] = c.low
@@ -138,13 +138,13 @@ def nuisances_lacking(nuisances: Mapping[str, float]) -> list[str]:
         return []
     beyond = sum(abs(v) > 2.0 for v in nuisances.values())
     tail = erfc(2.0 / sqrt(2.0))
-    if _at_least(beyond, n, tail) < CHANCE:
+    if _at_least(beyond, n, tail) < LEAST_P:
         return [
             f"{beyond} of {n} nuisances lie beyond 2 standard deviations, where chance puts about"
             f" {n * tail:.0f}"
         ]
     name, largest = max(nuisances.items(), key=lambda pair: abs(pair[1]))
-    if n * erfc(abs(largest) / sqrt(2.0)) < CHANCE:
+    if n * erfc(abs(largest) / sqrt(2.0)) < LEAST_P:
         return [f"{name} lies {abs(largest):.1f} standard deviations from what the lab states"]
     return []
 

@@ -1,10 +1,10 @@
-"""One calibration: scan for a start, CMA-ES, Gauss-Newton polish, uncertainty, leave-one-out prediction."""
+"""One calibration: scan for a start, CMA-ES, Gauss-Newton polish, uncertainty."""
 
 from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
+from calibration._numerics import rms_of
 from calibration.inference import (
     CmaOptions,
     Estimate,
@@ -30,60 +31,15 @@ from calibration.inference import (
 )
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.dice import DiceObjective
-from calibration.measurements.outlines.model import OutlineModel
 from calibration.parameters import Parametrisation, implausible, part_entry
 from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
-from calibration.study.calibration import Calibration, HeldOut, Status
+from calibration.study.calibration import Calibration, Status
+from calibration.study.held_out import held_out
 from calibration.study.measurements import Measurements
 
 Array = NDArray[np.float64]
 
 BULK = "bulk_ratio"
-
-
-def held_out(
-    problem: Problem, outlines: ModelObjective[OutlineModel], u: Array
-) -> tuple[tuple[HeldOut, ...], str]:
-    """Each beam predicted from all other measurements, the fit starting at u; and a note where that fails.
-
-    Nuisances and mesh corrections stay as taken at u, so that this costs no reference solve.
-    """
-    others = tuple(o for o in problem.objectives if o is not outlines)
-    trials = outlines.model.trials
-    if len(trials) < 2 and not others:
-        return (), "one beam alone: no length can be left out"
-    checks, notes = [], []
-    for i, trial in enumerate(trials):
-        own = outlines.model.of_trial(i)
-        objectives = (*others, outlines.subset(own, others=True)) if len(trials) > 1 else others
-        part = Problem(parametrisation=problem.parametrisation, objectives=objectives)
-        try:
-            end = polish(part, u, settled=0.04)
-        except ValueError as error:
-            notes.append(f"{trial.id}: {error}")
-            continue
-        if not end.converged:
-            notes.append(f"{trial.id}: {end.message}")
-        alone = outlines.subset(own)
-        residuals = alone.residuals(end.u[None])[0]
-        if not np.isfinite(residuals).all():
-            notes.append(f"{trial.id}: no equilibrium with the parameters of the others")
-            continue
-        seen = alone.model.seen(alone.state(end.u))
-        checks.append(
-            HeldOut(
-                trial=trial.id,
-                shear_modulus=problem.parametrisation.moduli(end.u).shear_modulus,
-                rms_raw=_rms(s.raw for s in seen),
-                rms=_rms(s.left for s in seen),
-                reduced_chi2=float(residuals @ residuals) / alone.points,
-            )
-        )
-    return tuple(checks), "; ".join(notes)
-
-
-def _rms(parts: Iterable[Array]) -> float:
-    return float(np.sqrt(np.mean(np.concatenate([*parts]) ** 2)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,11 +49,11 @@ class FitOptions:
     Attributes
     ----------
     cma : CmaOptions
-        Of the global search.
+        Options of the global search.
     gauss_newton : bool
-        Polish its result; without, there are no error bars.
+        True to polish its result; without, there are no error bars.
     leave_one_out : bool
-        Predict each beam from the others.
+        True to predict each beam from the others.
     """
 
     cma: CmaOptions = field(default_factory=CmaOptions)
@@ -122,7 +78,7 @@ def calibrate(
     data : Measurements
     options : FitOptions, optional
     history : sequence of Generation
-        Of an earlier run of the same search, which goes on from it.
+        Generations of an earlier run of the same search, which is continued.
     on_progress : callable
         Called with each `Generation`.
     """
@@ -231,7 +187,10 @@ def _polished(
     options: FitOptions,
     done: Polished | None,
 ) -> Calibration:
-    """With error bars, from u on. done : a polish that ended there already."""
+    """The calibration `best`, polished from u and with error bars.
+
+    done : result of a polish that ended at u already; None to polish here.
+    """
     try:
         end = done or polish(problem, u)
     except ValueError as error:
@@ -294,7 +253,7 @@ def _point(
     rms: float | None = None
     nuisances: dict[str, float] = {}
     if isinstance(data.outlines, ModelObjective):
-        rms = _rms(s.left for s in data.outlines.model.seen(data.outlines.state(u)))
+        rms = rms_of(s.left for s in data.outlines.model.seen(data.outlines.state(u)))
     for o in problem.objectives:
         if isinstance(o, ModelObjective):
             nuisances = {**nuisances, **o.nuisances(u)}
@@ -323,7 +282,10 @@ def _point(
 
 
 def _noise_freedom(objectives: Sequence[Objective]) -> float | None:
-    """Of the noise of all objectives: each counts by its share of the points. None if all of it is stated."""
+    """Degrees of freedom of the noise of all objectives, each weighted by its fraction of the points.
+
+    None if all of it is stated.
+    """
     models = [o.model for o in objectives if isinstance(o, ModelObjective)]
     doubt = sum(m.points**2 / m.noise_freedom() for m in models)
     return float(sum(o.points for o in objectives) ** 2 / doubt) if doubt else None
@@ -353,8 +315,10 @@ def _note(data: Measurements, shear_modulus: float) -> str:
 
 
 def _certain(problem: Problem, fitted: Calibration, end: Polished, *, bulk_seen: bool) -> Calibration:
-    """With error bars; bulk_seen: whether the other constants depend on a K/G that is held, and have their
-    part of its uncertainty."""
+    """The calibration `fitted` with error bars.
+
+    bulk_seen : True if the other constants depend on a K/G that is held, and so on its uncertainty.
+    """
     p = problem.parametrisation
     known = identify(p, end.u, end.jacobian, reduced_chi2=fitted.reduced_chi2)
     estimates = profile(problem, end, known)
@@ -387,8 +351,11 @@ def _specimens(objective: Objective) -> list[str]:
 
 
 def _widest(profiled: Sequence[Estimate], linear: Sequence[Estimate]) -> tuple[Estimate, ...]:
-    """The farther end of both intervals: in valleys that curve, or run along a bound, the profile's few
-    Newton steps stop short of the least chi-square, and its ends come too early."""
+    """On each side the farther end of both intervals.
+
+    In valleys that curve, or run along a bound, the profile's few Newton steps stop short of the least
+    chi-square, and its ends come too early.
+    """
     return tuple(
         replace(b, low=min(a.low, b.low), high=max(a.high, b.high))
         for a, b in zip(profiled, linear, strict=True)

@@ -63,53 +63,54 @@ class Calibration:
     unsettled : tuple of str
         Constants at a bound of the search, whose value is the bound's and not the data's.
     density : float, optional
-        As the lab states it [kg/m3].
+        Density as the lab states it [kg/m3].
     u : tuple of float
         The law's search coordinates.
     held_coordinates : int
         Number of these that the fit held (K/G where the data do not show it).
     parameters : mapping
-        As `tisim.Material` takes them.
+        Parameters as `tisim.Material` takes them.
     shear_modulus, shear_modulus_sd, bulk_modulus : float
-        At small strain [Pa].
+        Small-strain moduli [Pa], and standard deviation of the first.
     estimates, blind : tuple
         See `calibration.inference.Identification`; empty where there was no polish.
     covariance : tuple of tuple of float
-        Of u: 1.96 standard deviations of it are the 95 % intervals of linear theory; empty where there was no
-        polish.
+        Covariance of u: 1.96 standard deviations of it are the 95 % intervals of linear theory; empty where
+        there was no polish.
     chi2 : float
-        Of `points` measurements under the stated noise, without the prior's share. With the objective "dice"
-        the sum of (1 - Dice) / SCALE^2 over `points` photographs, and no measure of likelihood.
+        Chi-square of `points` measurements under the stated noise, without that of the prior. With the
+        objective "dice" the sum of (1 - Dice) / SCALE^2 over `points` photographs, and no measure of
+        likelihood.
     points : int
     reduced_chi2 : float
-        Over `freedom`.
+        Chi-square over `freedom`.
     noise_freedom : float, optional
         Degrees of freedom of a noise estimated from the scatter of the records; None if it is stated.
     rms : float, optional
-        Of the outlines' distances, registered [m].
+        Root mean square of the outlines' distances, registered [m].
     nuisances : mapping
-        Value of each in its standard deviations.
+        Value of each nuisance in its standard deviations.
     held_out : tuple of HeldOut
     held_out_note, note : str
-        What else the reader must know (a mesh error that could not be corrected).
+        Further remarks for the reader (a mesh error that could not be corrected).
     candidates, generations, without_answer : int
-        Of CMA-ES; candidates without equilibrium are counted in the last.
+        Counts of CMA-ES; the last is that of candidates without equilibrium.
     search_reason : str
-        Why the search ended.
+        Reason why the search ended.
     search_seconds, polish_seconds, wall_seconds : float
-        Core time of both, and the time that passed [s].
+        Core time of search and polish, and elapsed time of both [s].
     objective : str
         "likelihood" or "dice".
     parts : tuple of str
-        What the material has beside the law ("prony:2", "mullins"); moduli are then long-time ones, those of
-        the first loading.
+        Parts of the material beside the law ("prony:2", "mullins"); moduli are then long-time ones, those
+        of the first loading.
     asked : tuple of str
-        These as they were asked for, where the data chose among several ("prony"); else empty.
+        These as they were requested, where the data chose among several ("prony"); else empty.
     held : mapping
-        What it has beside the law and the fit did not search, by the field of `tisim.Material`, as a card
-        states it.
+        Parts of the material that the fit did not search, by the field of `tisim.Material`, as a card states
+        them.
     protocol : mapping
-        `calibration.parameters.ProtocolWindow` of the tests that these were fitted to.
+        `calibration.parameters.ProtocolWindow` of the tests that the parts were fitted to.
     """
 
     material: str
@@ -181,7 +182,7 @@ class Calibration:
 
     @property
     def material_parts(self) -> dict[str, Part]:
-        """What the material has beside its law, by the field of `tisim.Material`."""
+        """Parts of the material beside its law, by the field of `tisim.Material`."""
         if not self.u or not (self.parts or self.held):
             return {}
         law = self.parametrisation

@@ -52,7 +52,7 @@ def _least(found: Sequence[Calibration], scale: float) -> Calibration:
 
 
 def misfit_scale(results: Sequence[Calibration]) -> float:
-    """What chi-square is divided by where laws are compared: the least reduced one, at least 1.
+    """Divisor of chi-square for the comparison of laws: the least reduced one, at least 1.
 
     So a law that misses the data by more than the noise does not beat others by parts of its own error (QAIC:
     K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2002, 2.5).
@@ -125,7 +125,7 @@ def _same_parts(r: Calibration, chosen: Calibration) -> bool:
 
 
 def fitted_to(experiment: Experiment, material: str, *, objective: str = "likelihood") -> dict[str, Any]:
-    """What a card was fitted to: name and sha256 of the experiment, and the kinds of measurement."""
+    """Data that a card was fitted to: name and sha256 of the experiment, and the kinds of measurement."""
     own = replace(experiment, trials=tuple(t for t in experiment.trials if t.material == material))
     kinds = [kind.name for kind, _ in compared(own) if objective in ("likelihood", *kind.objectives)]
     return {"experiment": experiment.name, "sha256": experiment.digest, "kinds": kinds}
@@ -155,7 +155,7 @@ def _plain(parameters: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any
 
 
 def _parts(chosen: Calibration) -> dict[str, dict[str, Any]]:
-    """What the material has beside its law, by the card's keys: kinds of `tisim.parts`, parameters."""
+    """Parts of the material beside its law, by the card's keys: kinds of `tisim.parts`, parameters."""
     return {name: part_entry(part) for name, part in chosen.material_parts.items()}
 
 

@@ -250,7 +250,7 @@ def measure(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Seen:
-    """What photographs show of a simulated beam on a known setup: nothing behind the faces of its grips.
+    """Visible part of a simulated beam in photographs of a known setup: nothing behind the grips' faces.
 
     Images move and turn sections, but do not enlarge them: of a measured body only the mid line is traced.
     """

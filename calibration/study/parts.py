@@ -41,15 +41,16 @@ _ANY = ProtocolWindow(first=1.0, last=100.0, peaks=1)  # for the check of a spec
 
 @dataclass(frozen=True)
 class CardParts:
-    """What a material card has beside its law, for a fit: a part is held as it is, or where the fit searches
-    one of its field, the search begins there.
+    """Parts of a material card beside its law, for a fit.
+
+    A part is held as it is; if the fit searches one of its field, the search begins there.
 
     Attributes
     ----------
     name : str
-        Of the card, for sentences.
+        Name of the card, for messages.
     parts : mapping
-        By the field of `tisim.Material`.
+        Parts by the field of `tisim.Material`.
     path : str
         Where it was read, for the command that makes a fit again.
     """
@@ -64,7 +65,7 @@ class CardParts:
         return {field: part_entry(part) for field, part in self.parts.items()}
 
     def held(self, specs: Sequence[str]) -> dict[str, Part]:
-        """Those of which the fit searches none itself, beside the long-time moduli that a fit has."""
+        """Parts whose field the fit does not search, for the long-time moduli that a fit has."""
         searched = {option_of(s) for s in specs}
         return {field: part for field, part in self._long_time.items() if OPTIONS[field] not in searched}
 
@@ -83,7 +84,7 @@ class CardParts:
             return part
 
     def sentence(self, specs: Sequence[str]) -> str:
-        """What became of its parts."""
+        """Clauses on its parts: which are held, and at which a search begins."""
         held = self.held(specs)
         said = [
             f"{field} ({_in_words(part)}) is held as {self.name} states it" for field, part in held.items()
@@ -206,7 +207,7 @@ def _of(experiment: Experiment, material: str) -> Experiment:
 
 
 def label(law: str, specs: Sequence[str], card: CardParts | None = None) -> str:
-    """Of a fit, before its data are read."""
+    """Label of a fit, before its data are read."""
     held = {} if card is None else card.held(specs)
     own = [held_part(field, part, _ANY).label for field, part in held.items()]
     return "+".join([law, *(s.replace(":", "-") for s in specs), *own])

@@ -39,25 +39,25 @@ class Task:
     Attributes
     ----------
     experiment : Experiment
-        As it was read, or as the caller changed it: trials left out, rows cut.
+        Experiment as it was read, or as the caller changed it: trials left out, rows cut.
     material, law : str
     terms : int
-        Of a series law.
+        Number of terms of a series law.
     options : FitOptions
     folder : Path
         Where the fit is kept while it runs and when it has ended.
     objective : str
         "likelihood" or "dice".
     setup : Setup, optional
-        What is known of rig and camera.
+        Known setup of rig and camera.
     setup_file : str
-        Where it was read from, for the command that repeats the fit.
+        File that it was read from, for the command that repeats the fit.
     parts : tuple of str
-        What the material has beside the law (`calibration.study.parts`).
+        Parts of the material beside the law (`calibration.study.parts`).
     free_bulk_ratio : bool
-        K/G is found by photographs, and not held.
+        True if K/G is fitted to photographs, and not held.
     card : CardParts, optional
-        Of the material: parts that are held, or begin the search.
+        Parts on the material's card, which are held or begin the search.
     """
 
     experiment: Experiment

@@ -147,7 +147,7 @@ def interiors(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
 
 
 class SplitRun(Protocol):
-    """What a run knows of its split."""
+    """A run with the recipe and the groups of its split."""
 
     @property
     def recipe(self) -> SplitRecipe: ...

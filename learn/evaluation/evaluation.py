@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -11,9 +11,10 @@ import torch
 from numpy.typing import NDArray
 
 from learn.baselines import BASELINES
-from learn.data import MemoryDataset, Split, Store, contact_points, interiors, split_of_run
+from learn.data import MemoryDataset, Split, Store
 from learn.data.clouds import SurfaceField, scattered
 from learn.errors import InputError
+from learn.evaluation.ensembles import ensembles, names_of
 from learn.evaluation.intervals import (
     LEAST_POKES,
     Coverage,
@@ -28,6 +29,7 @@ from learn.evaluation.intervals import (
     too_few,
 )
 from learn.evaluation.intervals_file import load_intervals
+from learn.evaluation.new_to_run import parts_of, trained_on
 from learn.evaluation.predictions import (
     Cloud,
     SymmetryError,
@@ -47,9 +49,9 @@ from learn.evaluation.summary import (
     summarise,
 )
 from learn.metrics import Predictions
-from learn.models import Ensemble, Scenes, pokes_of
+from learn.models import Scenes, pokes_of
 from learn.progress import OnProgress, Progress, ignore
-from learn.training import Recipe, Run, check_dataset, known_domain, open_dataset
+from learn.training import Recipe, Run, known_domain
 from learn.validity import frame_distances
 
 CLOUD_SIZES = (512, 1024, 4096)
@@ -57,63 +59,6 @@ CLOUD_SEEDS = 3  # clouds of each size, since one cloud has a single point near 
 _CLOUD_POKES = 6
 Floats = NDArray[np.float64]
 log = logging.getLogger(__name__)
-
-
-def parts_of(store: Store, run: Run) -> Split:
-    """Parts of the run's own dataset; for another dataset, the frames of all that is new to the run.
-
-    That is inclusions in their blocks or, for a run that was split by site, contact points on these: those of
-    its training and validation parts are not new. Where its dataset cannot be read any more (`trained_on`),
-    shapes are told by their names. InputError if nothing is new.
-    """
-    if store.uuid == run.uuid:
-        return split_of_run(store, run)
-    by_shape, own, pokes = run.recipe.split == "shape", trained_on(run), np.arange(store.pokes)
-    names = np.array(store.shapes)[store.shape]
-    if own is not None:
-        data, rows = own
-        key = interiors if by_shape else _points
-        new = ~np.isin(key(store, pokes), key(data, np.unique(data.frame_poke[rows])))
-    elif by_shape:
-        new = ~np.isin(names, run.groups["train"] + run.groups["validation"])
-    elif run.seen:
-        new = ~np.isin(contact_points(store, pokes), list(run.seen))
-    else:
-        raise InputError(
-            f"{run.folder}: it was split by site, and does not say which contact points it was trained on"
-            f" (version of before 2026-11-27), so that none of {store.location} is known to be new: train it"
-            " again"
-        )
-    used = store.done & (store.frame_count > 0)
-    test = used & new
-    if not test.any():
-        shapes = ", ".join(sorted(set(names[used].tolist())))
-        raise InputError(
-            f"{store.location}: {run.folder} was trained on all its {run.recipe.split}s (shapes {shapes}),"
-            " expected one that it has not seen"
-        )
-    none = np.zeros(0, dtype=np.int64)
-    rows = np.flatnonzero(test[store.frame_poke] & store.presses)
-    groups = {"train": [], "validation": [], "test": sorted(set(names[test].tolist()))}
-    return Split(train=none, validation=none, test=rows, groups=groups)
-
-
-def trained_on(run: Run) -> tuple[Store, NDArray[np.int64]] | None:
-    """The run's own dataset and the frames of its training and validation parts; None if it is not there."""
-    try:
-        data = open_dataset(run, verify=False)
-        check_dataset(run.uuid, run.folder, data)
-        split = split_of_run(data, run)
-    except InputError:
-        return None
-    return data, np.concatenate([split.train, split.validation])
-
-
-def _points(store: Store, pokes: NDArray[np.int64]) -> NDArray[np.str_]:
-    """A key of the interior, first contact and direction of each poke (k,)."""
-    place = np.column_stack([store.path_start, store.direction])[pokes].round(9) + 0.0
-    texts = [" ".join(f"{v:.9f}" for v in row) for row in place]
-    return np.array([f"{key} {text}" for key, text in zip(interiors(store, pokes), texts, strict=True)])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,8 +87,8 @@ class Evaluation:
     covered, across : coverage of intervals from the run's own validation part, and from the other folds.
     no_intervals : reason why a run has no intervals, by run.
     intervals : intervals of each run (or ensemble), from the other folds if there are enough.
-    by_name : folders of runs on another dataset, whose own is not where it was, so that shapes were told by
-        their names.
+    by_name : folders of runs on another dataset, whose own is not where it was, so that shapes were
+        identified by their names.
     clouds : metrics by point cloud; interpolation_mm: error of their interpolated truth [mm].
     depths, covers : metrics by model and band of depth, and of cover over the inclusion below the contact;
         one entry per fold.
@@ -220,7 +165,7 @@ def evaluate(
     predicted: list[Predicted] = []
     tested = np.zeros(store.frames, dtype=bool)
     joined = ensembles(runs) if ensemble else []
-    every = [*joined, *zip(runs, _names(runs), strict=True)]
+    every = [*joined, *zip(runs, names_of(runs), strict=True)]
     steps = _Steps(len(every) + (len(BASELINES) if baselines else 0), on_progress)
     for run, name in every:
         split = parts_of(store, run)
@@ -290,78 +235,6 @@ def _check_finite(run: Run, predictions: Predictions) -> None:
             f"{which}: the answer to {int((~good).sum())} of {len(good)} frames, the first of poke"
             f" {int(predictions.poke[~good][0])}, is not finite{why}: train for more epochs"
         )
-
-
-def ensembles(runs: list[Run]) -> list[tuple[Run, str]]:
-    """Ensembles of the runs that differ in seed alone (`join_runs`), with names.
-
-    InputError if there are none, or the runs are of several datasets.
-    """
-    groups: dict[str, list[Run]] = {}
-    for run in runs:
-        _check_one_dataset(runs[0], run)
-        groups.setdefault(repr(_but_for_the_seed(run.recipe)), []).append(run)
-    names = dict(zip(runs, _names(runs), strict=True))
-    joined = [
-        (join_runs(group), f"{names[group[0]]}, {len(group)} together")
-        for group in groups.values()
-        if len(group) > 1
-    ]
-    if not joined:
-        raise InputError("an ensemble needs two or more runs that differ in seed alone")
-    return joined
-
-
-def join_runs(runs: list[Run]) -> Run:
-    """Join runs to an ensemble, as a run with the folder of the first.
-
-    InputError if they differ in more than the seed and the recipe's name, or two have the same seed.
-    """
-    first = runs[0]
-    for k, run in enumerate(runs[1:], 1):
-        _check_one_dataset(first, run)
-        wanted = f"{run.folder}: expected runs that differ in seed alone, this one"
-        before, now = (_but_for_the_seed(one.recipe).model_dump() for one in (first, run))
-        for key, value in now.items():
-            if value != before[key]:
-                raise InputError(f"{wanted} has {key} {value}, {first.folder} {before[key]}")
-        if (run.groups, run.statistics.frames) != (first.groups, first.statistics.frames):
-            raise InputError(f"{wanted} was trained on other pokes than {first.folder}")
-        for other in runs[:k]:
-            if other.recipe.seed == run.recipe.seed:
-                raise InputError(f"{wanted} has seed {run.recipe.seed}, as {other.folder}")
-    return replace(
-        runs[0],
-        model=Ensemble([run.model for run in runs]).eval(),
-        weights=tuple(digest for run in runs for digest in run.weights),
-        members=tuple(run.folder for run in runs),
-    )
-
-
-def _check_one_dataset(first: Run, run: Run) -> None:
-    """Raise InputError unless both runs are of one dataset: a member may have seen another's test part."""
-    if run.uuid != first.uuid:
-        raise InputError(f"{run.folder}: trained on dataset {run.uuid}, {first.folder} on {first.uuid}")
-
-
-def _but_for_the_seed(recipe: Recipe) -> Recipe:
-    """The recipe without what the members of an ensemble may differ in."""
-    return recipe.model_copy(update={"seed": 0, "name": "-"})
-
-
-def _names(runs: list[Run]) -> list[str]:
-    """Model of each run, with the recipe's name and number where recipes of one model differ."""
-    alike: dict[str, list[str]] = {}
-    texts = [repr(_but_for_the_seed(run.recipe).model_copy(update={"fold": 0})) for run in runs]
-    for run, text in zip(runs, texts, strict=True):
-        known = alike.setdefault(run.recipe.model, [])
-        known += [text] if text not in known else []
-    names = []
-    for run, text in zip(runs, texts, strict=True):
-        known, name = alike[run.recipe.model], run.recipe.model
-        number = f" {known.index(text) + 1}" if len(known) > 1 else ""
-        names.append(f"{name} ({run.recipe.name}{number})" if number else name)
-    return names
 
 
 def _part(recipe: Recipe) -> str:

@@ -13,7 +13,8 @@ from typing import Any
 
 import jinja2
 
-from learn.evaluation.evaluation import Covered, Evaluation, parts_of
+from learn.evaluation.evaluation import Covered, Evaluation
+from learn.evaluation.new_to_run import parts_of
 from learn.evaluation.pictures import draw_forces, draw_learning, draw_poke, encoded, ranked_pokes
 from learn.evaluation.summary import Row, Value, over_folds
 from learn.metrics import METRICS, RING_EDGES_MM
@@ -103,13 +104,14 @@ def cautions(found: Evaluation) -> list[str]:
     lines = []
     if found.pokes < _FEW_POKES:
         lines.append(
-            f"{counted(found.pokes, 'test poke').capitalize()} cannot say how the model does on others: "
+            f"{counted(found.pokes, 'test poke').capitalize()} cannot show how the model performs on others: "
             f"expect {_FEW_POKES} or more for figures to compare."
         )
     if found.by_name:
         lines.append(
-            f"Shapes were told by their names for {', '.join(found.by_name)}, whose own dataset is not where "
-            "it was: one of another name may be one that was trained on, and one of a known name may be new."
+            f"Shapes were identified by their names for {', '.join(found.by_name)}, whose own dataset is not "
+            "where it was: one of another name may be one that was trained on, and one of a known name may "
+            "be new."
         )
     timeless = [str(run.folder) for run in found.runs if not run.model.takes_clock]
     if timeless and found.store.clock is not None:

@@ -1,4 +1,4 @@
-"""What lies ahead of the indenter: how much of its way along the push is rigid, and how near that is.
+"""Rigid fraction and distance of the interior ahead of the indenter, along the direction of the push.
 
 The cover below the contact does not say what an inclined indenter meets, nor whether one that goes down near
 a rim meets the inclusion or passes it. `blocked` takes samples along the push, each a mean over the columns

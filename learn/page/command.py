@@ -7,10 +7,8 @@ from typing import Annotated
 
 import typer
 
-from learn._options import Dataset, Plugins, Version, load_plugins
+from learn._options import Dataset, Plugins, Version, load_plugins, single
 from learn._terminal import make_console, plain_errors
-from learn.cli import app as all_commands
-from learn.cli import single
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -38,8 +36,7 @@ Exit codes: 0 written, 2 bad input, or a page of more than 10 MB gzipped.
 POKES = 4  # by default
 
 
-@all_commands.command(epilog=EXAMPLES)
-def page(
+def main(
     run: Annotated[
         Path,
         typer.Argument(
@@ -105,4 +102,4 @@ def page(
         )
 
 
-app = single(page, EXAMPLES)
+app = single(main, EXAMPLES)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import tisim
 from calibration.experiment import BeamTrial, read
 from calibration.measurements.objective import ModelObjective
-from calibration.measurements.outlines import Fidelity, away_from_clamps, beam_scene, edges, feet
+from calibration.measurements.outlines import Fidelity, away_from_clamps, beam_scene, edges, project
 from calibration.measurements.outlines.model import OutlineModel
 from calibration.parameters import parametrisation
 from calibration.study import measurements
@@ -81,7 +81,7 @@ class Beams:
         found = []
         for i, traced in self.photographs:
             for points, edge in zip((traced.upper, traced.lower), edges(results[i]), strict=True):
-                found.append(feet(points, edge).distance)
+                found.append(project(points, edge).distance)
         return np.concatenate(found)
 
 

@@ -31,7 +31,7 @@ def default() -> list[list[str]]:
 def linear() -> list[list[str]]:
     """Plain 4-node tetrahedra at the paper's fineness."""
     rows = []
-    fidelity = Fidelity(element="tet4", layer=PAPER_LAYER, rings=PAPER_RINGS)
+    fidelity = Fidelity(element="tet4", axial_element_size=PAPER_LAYER, radial_elements=PAPER_RINGS)
     for mixture in MIXTURES:
         beams = Beams(mixture, fidelity)
         start = default_fit(mixture).shear
@@ -47,7 +47,7 @@ def faceted() -> list[list[str]]:
     rows = []
     for mixture in MIXTURES:
         for sides, rings in POLYGONS.items():
-            beams = Faceted(mixture, Fidelity(rings=rings))
+            beams = Faceted(mixture, Fidelity(radial_elements=rings))
             squares = least_squares(beams, 300.0, default_fit(mixture).shear)
             rows.append(_row(f"{sides} sides", mixture, squares))
     return rows

@@ -55,7 +55,13 @@ def _inscribed(length: float, radius: float, supports: str, layer: float, rings:
 
 def inscribed(trial: BeamTrial, fidelity: Fidelity) -> tisim.Mesh:
     assert isinstance(trial.section, tisim.Circle)
-    return _inscribed(trial.free_length, trial.section.radius, trial.supports, fidelity.layer, fidelity.rings)
+    return _inscribed(
+        trial.free_length,
+        trial.section.radius,
+        trial.supports,
+        fidelity.axial_element_size,
+        fidelity.radial_elements,
+    )
 
 
 class Stopped(Beams):

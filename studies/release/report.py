@@ -46,7 +46,7 @@ GUESS = 100e3  # shear modulus that the first search starts from [Pa]
 # what it swings about is not yet where it settles: left free by this much, or the damping makes up for it
 CREEP = Nuisances(offset=1e-3)
 NOTHING = Nuisances(position=0.0, frame=0.0)
-FINE, SHORT = Fidelity(layer=0.010, rings=2), Fidelity(time_step=1e-3)
+FINE, SHORT = Fidelity(axial_element_size=0.010, radial_elements=2), Fidelity(time_step=1e-3)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ from factory._sampling import (
 )
 from tests.factory.standin import block_mesh
 from tisim.bodies import BoxInclusion, CylinderInclusion, Rod, SphereInclusion
-from tisim.scene import Material, Poke
+from tisim.material import Material
+from tisim.scene import Poke
 
 BLOCK = (0.1, 0.1, 0.032)
 LINEAR = np.array([[0.3, -0.2, 0.1], [0.05, 0.4, -0.7], [0.2, 0.1, 0.9]])

@@ -149,7 +149,7 @@ def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
     html = (run / "evaluation" / "report.html").read_text()
     assert "<h2>Intervals</h2>" in html
     assert reason in html
-    assert "1 test poke cannot say how the model does on others" in html
+    assert "1 test poke cannot show how the model performs on others" in html
     assert sorted(p.stem for p in (run / "evaluation").glob("*.png")) == ["force", "learning", "only"]
 
 

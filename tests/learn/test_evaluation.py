@@ -421,7 +421,7 @@ def test_shapes_of_another_dataset_are_told_by_what_they_are(run: Path, store: P
     assert set(parts_of(drawn, away).groups["test"]) == set(loaded.groups["test"])
     found = evaluate([away], drawn, baselines=False, clouds=False)
     assert found.by_name == [str(run)]
-    assert any("told by their names" in sentence for sentence in cautions(found))
+    assert any("identified by their names" in sentence for sentence in cautions(found))
     assert not evaluate([loaded], drawn, baselines=False, clouds=False).by_name
 
 

@@ -11,9 +11,10 @@ from scipy.sparse.linalg import eigsh
 from tisim.bodies import Circle
 from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.discretisation.mass import consistent_mass, lumped_mass
+from tisim.material import Material
 from tisim.problems.beam.system import beam_discretisation, beam_system
 from tisim.problems.dynamics import explicit, implicit
-from tisim.scene import Beam, Material, Solver
+from tisim.scene import Beam, Solver
 
 MU, LAM, DENSITY = 40e3, 800e3, 1000.0
 SOFT = Material(law="neo-hookean", parameters={"mu": MU, "lam": LAM}, density=DENSITY)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from tisim.scene import Material
+from tisim.material import Material
 
 LAWS = (
     "st-venant-kirchhoff",

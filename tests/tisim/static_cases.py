@@ -10,12 +10,13 @@ import numpy as np
 
 from tisim import laws
 from tisim.discretisation.body import Discretisation, DiscretisedBody
+from tisim.material import Material
 from tisim.mesh import Mesh, boundary_facets
 from tisim.mesh.refine import to_quadratic
 from tisim.nonlinear.newton import newton
 from tisim.problems.beam.system import BeamSystem
 from tisim.result import Result, Status
-from tisim.scene import Beam, Material
+from tisim.scene import Beam
 
 REFERENCES = Path(__file__).parents[2] / "benchmarks" / "references"
 # the six tetrahedra of a hexahedron about its long diagonal (Kuhn)

@@ -5,12 +5,13 @@ import pytest
 from static_cases import deflection, neo_hookean
 
 from tisim.bodies import Circle, Rectangle
+from tisim.material import Material
 from tisim.mesh import Mesh
 from tisim.mesh.beam import beam_mesh
 from tisim.mesh.refine import to_quadratic
 from tisim.problems.beam.solve import solve_beam
 from tisim.problems.beam.system import beam_discretisation
-from tisim.scene import Beam, Material, Solver
+from tisim.scene import Beam, Solver
 from tisim.simulate import simulate
 
 SOFT = neo_hookean(2e4, 100.0)

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from static_cases import neo_hookean
 
+from tisim.material import Material
 from tisim.problems.beam import equilibrium
 from tisim.problems.beam.solve import solve_beam
 from tisim.problems.beam.system import beam_discretisation, beam_system
 from tisim.result import Status
-from tisim.scene import Beam, Material, Solver
+from tisim.scene import Beam, Solver
 
 BEAMS = [("clamped-free", 0.05), ("clamped-free", 0.1), ("clamped-clamped", 0.15)]
 COARSE = {"axial_element_size": 0.0125, "radial_elements": 1}  # a status is a status on any mesh

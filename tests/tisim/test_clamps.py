@@ -8,13 +8,14 @@ from static_cases import deflection, neo_hookean
 
 import tisim
 from tisim.bodies import Circle
+from tisim.material import Material
 from tisim.parallel.chunks import make_chunks
 from tisim.problems.beam import imperfect
 from tisim.problems.beam.imperfect import clamp_moments, imperfect_system
 from tisim.problems.beam.solve import solve_beam
 from tisim.problems.beam.system import beam_discretisation
 from tisim.result import Status
-from tisim.scene import Beam, ClampImperfections, Imperfections, Material, Solver, Void
+from tisim.scene import Beam, ClampImperfections, Imperfections, Solver, Void
 
 G, DENSITY = 9.81, 1000.0
 SOFT = neo_hookean(1.5e4, 50.0)

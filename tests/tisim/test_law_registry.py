@@ -12,6 +12,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from other_process import python
 
 import tisim
 from tisim import _extensions, laws
@@ -126,15 +127,7 @@ def test_other_processes_know_an_added_law(tmp_path: Path, name: str, load: str)
         )
         text = remember + text
     (tmp_path / "run.py").write_text(text)
-    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
-    done = subprocess.run(
-        [sys.executable, str(tmp_path / "run.py")],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.stdout.strip() == "True", done.stderr
+    assert python(tmp_path, str(tmp_path / "run.py")) == "True"
 
 
 def test_a_law_registered_anew_takes_the_place_of_the_old(gent: ModuleType) -> None:
@@ -175,16 +168,8 @@ def test_an_unsound_law_is_found(gent: ModuleType) -> None:
 
 def test_nothing_of_taichi_is_imported_before_a_law_is_evaluated(tmp_path: Path) -> None:
     (tmp_path / "my_gent.py").write_text(GENT)
-    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
     script = "import sys, tisim, my_gent; print('taichi' in sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == "False"
+    assert python(tmp_path, "-c", script) == "False"
 
 
 def test_commands_know_the_laws_of_files_that_the_environment_names(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from law_cases import AB, deformations, energy, materials, slope
 
 from tisim import laws
 from tisim.laws import evaluate
-from tisim.scene import Material
+from tisim.material import Material
 
 
 def pressure(material, F):

@@ -8,7 +8,7 @@ from law_cases import LAWS, deformations, energy, materials, rotations, slope
 
 from tisim import laws
 from tisim.laws import evaluate
-from tisim.scene import Material
+from tisim.material import Material
 
 any_material = st.sampled_from(LAWS).flatmap(materials)
 many = settings(max_examples=200, deadline=None)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -12,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from other_process import python
 
 import tisim
 from tisim import parts, problems
@@ -157,19 +156,11 @@ def test_parts_from_a_file_are_found_and_solved(mine: ModuleType) -> None:
 def test_parts_from_a_file_reach_other_processes(mine: ModuleType, tmp_path: Path) -> None:
     assert mine.__file__ == str(tmp_path / "my_parts.py")
     (tmp_path / "main.py").write_text(MAIN)
-    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
     found = []
     # one after the other: the first process caches the kernels on disk
     for workers in ("1", "2"):
         out = tmp_path / f"{workers}.npz"
-        run = subprocess.run(
-            [sys.executable, str(tmp_path / "main.py"), workers, str(out)],
-            env={**os.environ, "PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-            timeout=600,
-        )
-        assert run.returncode == 0, run.stderr
+        python(tmp_path, str(tmp_path / "main.py"), workers, str(out))
         with np.load(out) as saved:
             found.append([saved[name] for name in saved.files])
     here, there = found

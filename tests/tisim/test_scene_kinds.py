@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -12,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from other_process import python
 
 import tisim
 from tisim import problems
@@ -115,15 +114,7 @@ def test_an_added_kind_is_solved_checked_and_described(squeeze: ModuleType, tmp_
 def test_other_processes_solve_an_added_kind(tmp_path: Path) -> None:
     (tmp_path / "my_squeeze.py").write_text(SQUEEZE)
     (tmp_path / "run.py").write_text(MAIN)
-    path = os.pathsep.join([str(Path(tisim.__file__).parents[1]), str(tmp_path)])
-    done = subprocess.run(
-        [sys.executable, str(tmp_path / "run.py")],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.stdout.strip() == "True", done.stderr
+    assert python(tmp_path, str(tmp_path / "run.py")) == "True"
 
 
 @dataclass(frozen=True, kw_only=True)

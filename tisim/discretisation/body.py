@@ -14,8 +14,8 @@ from tisim.discretisation.packed import features_of, history_of, pack
 from tisim.discretisation.quadrature import Reference, bulk_shares, reference
 from tisim.linear.blocks import Pattern, pattern_of
 from tisim.linear.direct import DirectSolver
+from tisim.material import Material
 from tisim.mesh import Mesh
-from tisim.scene import Material
 
 Array = NDArray[np.float64]
 

@@ -28,7 +28,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.parts import Softening, Spectrum
+from tisim.parts import Softening, Spectrum, ramp_weight
 
 Array = NDArray[np.float64]
 
@@ -36,12 +36,6 @@ Isochoric = tuple[Array, Array, Array]
 """C (m, q, 6), S (m, q, 6) [Pa] and the isochoric energy before softening (m, q) [J/m3]."""
 
 _TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # weight of each component in a double contraction
-
-
-def weight(h: Array) -> Array:
-    """c(h) = (1 - exp(-h))/h, 1 at h = 0."""
-    safe = np.where(h > 0.0, h, 1.0)
-    return np.where(h > 0.0, -np.expm1(-safe) / safe, 1.0)
 
 
 class History:
@@ -79,7 +73,7 @@ class History:
         if self._spectrum is None:
             return
         h = dt / self._spectrum.times
-        c = self._spectrum.strengths * weight(h)
+        c = self._spectrum.strengths * ramp_weight(h)
         H = np.tensordot(np.exp(-h), self._Q, axes=1)
         H -= float(c.sum()) * self._S
         self.state[..., :6] = H
@@ -91,12 +85,12 @@ class History:
         lost = np.zeros_like(energy)
         if self._spectrum is not None:
             h = self._dt / self._spectrum.times
-            c, decay = self._spectrum.strengths * weight(h), np.exp(-h)
+            c, decay = self._spectrum.strengths * ramp_weight(h), np.exp(-h)
             moved = 0.25 * (C - self._C) * _TWICE  # the work of the mean stress is (Q + Q')/2 : dC/2
             for i in range(len(h)):
                 Q = decay[i] * self._Q[i] + c[i] * (S - self._S)
                 work = np.einsum("mqk,mqk->mq", self._Q[i] + Q, moved)
-                stored = decay[i] ** 2 * self._stored[i] + weight(2.0 * h[i : i + 1])[0] * work
+                stored = decay[i] ** 2 * self._stored[i] + ramp_weight(2.0 * h[i : i + 1])[0] * work
                 gone = np.maximum(self._stored[i] + work - stored, 0.0)
                 self._stored[i] += work - gone
                 self._lost += gone

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tisim import laws
 from tisim.discretisation.history import History
-from tisim.scene import Material
+from tisim.material import Material
 
 if TYPE_CHECKING:
     from tisim.kernels.isochoric import Features

@@ -249,7 +249,7 @@ class TetrahedralParts:
 
     Attributes
     ----------
-    mends : bool
+    may_recover : bool
         True if the fraction of tetrahedra may fall again.
     """
 
@@ -262,7 +262,7 @@ class TetrahedralParts:
         self._there = self._whole > 0.0
         self._rest = np.where(self._there, 2.0 * self._whole, 1.0)
         self._worst = np.ones(mesh.n_elements)
-        self.mends = False
+        self.may_recover = False
 
     def state(self) -> tuple[Array, Array]:
         """Copy of the present state, for `restore`."""
@@ -279,7 +279,7 @@ class TetrahedralParts:
         volume = (a * np.cross(b, c)).sum(axis=2) / 6.0
         mean = np.where(self._there, volume, 0.0).sum(axis=1) / (2.0 * self._volume)
         least = np.where(self._there, volume / self._rest, np.inf).min(axis=1)
-        self._worst = least / mean if self.mends else np.minimum(self._worst, least / mean)
+        self._worst = least / mean if self.may_recover else np.minimum(self._worst, least / mean)
         t = np.clip((BENT - self._worst) / (BENT - CRUSHED), 0.0, 1.0)
         part = TETRAHEDRAL_PART + (LARGEST_PART - TETRAHEDRAL_PART) * t * t * (3.0 - 2.0 * t)
         self._weights[:, 1:] = part[:, None] * self._whole

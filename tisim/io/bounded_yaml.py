@@ -193,7 +193,7 @@ def _check_keys(node: yaml.MappingNode) -> None:
 
 
 def _value(key: yaml.ScalarNode) -> Hashable:
-    """What a key stands for: 1 and 0x1, or yes and true, are the same in a mapping."""
+    """Value of a key: 1 and 0x1, or yes and true, are the same in a mapping."""
     if key.tag == "tag:yaml.org,2002:str":
         return str(key.value)
     try:

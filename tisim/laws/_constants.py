@@ -87,7 +87,7 @@ def extension(
     ----------
     law : "yeoh", "mooney-rivlin" or "eight-chain"
     amount : float
-        Of the extension [-]: the stiffening of Yeoh's law, the share C01 / (C10 + C01) of the
+        Size of the extension [-]: the stiffening of Yeoh's law, the share C01 / (C10 + C01) of the
         second invariant, or 1 / L^2 of the chains' locking stretch L.
     shear_modulus, bulk_modulus : float
         Small-strain moduli [Pa].

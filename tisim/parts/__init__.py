@@ -58,7 +58,7 @@ LogTime(part=0.05, first=0.01, last=10000.0)
 from __future__ import annotations
 
 from tisim.parts._entry import EntryError, EntryProblem, decode, encode
-from tisim.parts._part import FIELDS, Fibres, Part, Softening, Spectrum, Viscosity, of
+from tisim.parts._part import FIELDS, Fibres, Part, Softening, Spectrum, Viscosity, of, ramp_weight
 from tisim.parts._point import MaterialPoints, PointResponse, respond
 from tisim.parts._registry import get, names, register, unregister
 from tisim.parts.holzapfel_gasser_ogden import HolzapfelGasserOgden
@@ -84,6 +84,7 @@ __all__ = [
     "get",
     "names",
     "of",
+    "ramp_weight",
     "register",
     "respond",
     "unregister",

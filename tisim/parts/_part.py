@@ -68,6 +68,12 @@ class Spectrum:
         return self.equilibrium + float(self.strengths @ np.exp(-time / self.times))
 
 
+def ramp_weight(h: Array) -> Array:
+    """Weight (1 - exp(-h))/h of a linear change over h relaxation times in its overstress; 1 at h = 0."""
+    safe = np.where(h > 0.0, h, 1.0)
+    return np.where(h > 0.0, -np.expm1(-safe) / safe, 1.0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Viscosity(Part):
     """A part that relaxes isochoric stresses (finite linear viscoelasticity)."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
-    from tisim.scene import Material
+    from tisim.material import Material
 
 Array = NDArray[np.float64]
 

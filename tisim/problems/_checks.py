@@ -20,9 +20,10 @@ from tisim._checks import (
     check_whole,
 )
 from tisim.course import Course
+from tisim.material import Material
 from tisim.mesh import Mesh
 from tisim.problems._registry import kind_of
-from tisim.scene import Material, Solver
+from tisim.scene import Solver
 
 
 def check_scene(index: int, scene: Any) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tisim.course import Stop
-from tisim.scene import Material
+from tisim.material import Material
 
 
 def shortest_time(material: Material) -> float | None:

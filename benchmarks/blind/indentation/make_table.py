@@ -21,6 +21,7 @@ import numpy as np
 
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
 
 Array = np.ndarray[Any, Any]
@@ -95,12 +96,6 @@ def _span(a: float, b: float, first: float, growth: float) -> Array:
     return np.asarray(a + (b - a) * np.r_[0.0, np.cumsum(steps)] / sum(steps))
 
 
-def _with_middles(c: Array) -> Array:
-    out = np.empty(2 * len(c) - 1)
-    out[::2], out[1::2] = c, (c[1:] + c[:-1]) / 2
-    return out
-
-
 def layer(s: Setup) -> fe.Mesh:
     """Mesh (axial, radial) [m], fine under the indenter, with element boundaries at the cylinder's ends."""
     r = s.rod
@@ -123,12 +118,7 @@ def layer(s: Setup) -> fe.Mesh:
         at, last = stop, part[-1] - part[-2]
     axial = s.height - np.concatenate(down)[::-1]
     axial[0] = 0.0
-    grid = np.stack(np.meshgrid(_with_middles(axial), _with_middles(radial), indexing="ij"), -1)
-    number = np.arange(grid[..., 0].size).reshape(grid.shape[:2])
-    reference = fe.BiQuadraticQuad().points.astype(int) + 1
-    n = number.shape
-    pick = [tuple(slice(o, n[k] - 2 + o, 2) for k, o in enumerate(p)) for p in reference]
-    return fe.Mesh(1e-3 * grid.reshape(-1, 2), np.stack([number[p].ravel() for p in pick], -1), "quad9")
+    return quadrilaterals(1e-3 * with_middles(axial), 1e-3 * with_middles(radial))
 
 
 def push(s: Setup, *, stiffer: float = 1.0) -> dict[str, list[float]]:

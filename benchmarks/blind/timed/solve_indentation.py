@@ -28,6 +28,7 @@ from benchmarks.blind.timed.indentation import CHECKS, Layer, Push, load, pushes
 from benchmarks.blind.timed.material import Prony
 from benchmarks.references.laws import log_volumetric
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
 
 Array = NDArray[np.float64]
@@ -73,12 +74,7 @@ def meridian(s: Layer) -> fe.Mesh:
     down = np.concatenate([[0.0], _spread(0.0, s.height, h / 1.3)])
     z = (s.height - down)[::-1]
     z[0] = 0.0
-    grid = np.stack(np.meshgrid(_with_middles(z), _with_middles(r), indexing="ij"), -1)
-    number = np.arange(grid[..., 0].size).reshape(grid.shape[:2])
-    n, m = len(z) * 2 - 1, len(r) * 2 - 1
-    offsets = fe.BiQuadraticQuad().points.astype(int) + 1
-    cells = np.stack([number[i : n - 2 + i : 2, j : m - 2 + j : 2].ravel() for i, j in offsets], -1)
-    return fe.Mesh(grid.reshape(-1, 2), cells, "quad9")
+    return quadrilaterals(with_middles(z), with_middles(r))
 
 
 def _spread(start: float, end: float, last: float) -> Array:
@@ -87,12 +83,6 @@ def _spread(start: float, end: float, last: float) -> Array:
     while sum(sizes) < end - start:
         sizes.append(1.3 * sizes[-1])
     return np.asarray(start + (end - start) * np.cumsum(sizes) / sum(sizes))
-
-
-def _with_middles(c: Array) -> Array:
-    out = np.empty(2 * len(c) - 1)
-    out[::2], out[1::2] = c, (c[1:] + c[:-1]) / 2
-    return out
 
 
 class Indentation:

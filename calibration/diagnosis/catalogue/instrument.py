@@ -9,7 +9,7 @@ CAMERA_ROLL = Effect(
     parameter="angle_deg",
     per_unit=57.29577951308232,
     belongs_to="camera",
-    sentence="the camera is rolled against the rig",
+    sentence="the camera is rotated about its axis relative to the rig",
     remedy="put a plumb line or a gauge into the picture",
 )
 
@@ -55,7 +55,7 @@ FORCE_OFFSET = Effect(
     per_unit=1.0,
     belongs_to="rig",
     sentence="the zero of the force is off",
-    remedy="record some seconds before the rod touches, and tare the load cell",
+    remedy="record some seconds before the indenter touches, and tare the load cell",
 )
 
 FORCE_DRIFT = Effect(
@@ -64,7 +64,7 @@ FORCE_DRIFT = Effect(
     per_unit=1e3,
     belongs_to="rig",
     sentence="the zero of the force drifts",
-    remedy="record the free rod before and after the poke; let the load cell warm up",
+    remedy="record the free indenter before and after the indentation; let the load cell warm up",
 )
 
 STRESS_OFFSET = Effect(

@@ -19,7 +19,7 @@ STRAIN_STIFFENING = Effect(
     parameter="c2_over_c1",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the material gets stiffer the more it is strained",
+    sentence="the material stiffens with strain",
     remedy="photograph a longer beam, or the softest mixture; pull a coupon to large strain",
     with_material=True,
 )
@@ -30,7 +30,7 @@ SECOND_INVARIANT = Effect(
     per_unit=1.0,
     belongs_to="specimen",
     sentence="the stress depends on the second invariant too, so that modes of loading differ",
-    remedy="test in another mode (equibiaxial tells most), or compress as well as pull",
+    remedy="test in another mode (equibiaxial is the most informative), or compress as well as pull",
     with_material=True,
 )
 
@@ -39,7 +39,7 @@ LIMITED_EXTENSIBILITY = Effect(
     parameter="one_over_locking_stretch_squared",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the material's chains run out of length at a finite strain",
+    sentence="the material's chains have a finite extensibility: it locks at a finite strain",
     remedy="pull until it locks: only there it differs from a plain stiffening",
     with_material=True,
 )
@@ -79,7 +79,7 @@ HYSTERESIS = Effect(
     parameter="unloading_loss",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the material gives back less than was put in: unloading lies below loading",
+    sentence="the material dissipates energy: unloading lies below loading",
     remedy="record the unloading too",
     with_material=True,
 )
@@ -109,7 +109,7 @@ PERMANENT_SET = Effect(
     parameter="part_of_largest_strain",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the material keeps part of its largest strain: unloaded it does not come back to its length",
+    sentence="the material keeps part of its largest strain: unloaded, it does not recover its length",
     remedy="measure the specimen's length after the test, at once and an hour later",
     with_material=True,
 )

@@ -9,7 +9,7 @@ GRIP_LENGTH = Effect(
     parameter="depth_mm",
     per_unit=1e3,
     belongs_to="rig",
-    sentence="the grips hold deeper inside than at their faces",
+    sentence="the grips hold the beam deeper inside than at their faces",
     remedy="clamp a metal bar and measure where the grip holds it",
 )
 
@@ -27,7 +27,7 @@ CLAMP_COMPLIANCE = Effect(
     parameter="rad_per_Nm",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="the clamps turn under the moment that they carry",
+    sentence="the clamps rotate under the moment that they carry",
     remedy="load the clamp with a known moment and measure its rotation",
 )
 
@@ -72,7 +72,7 @@ GRAVITY_TILT = Effect(
     parameter="angle_deg",
     per_unit=57.29577951308232,
     belongs_to="rig",
-    sentence="the rig leans: gravity does not act along its vertical axis",
+    sentence="the rig is tilted: gravity does not act along its vertical axis",
     remedy="level the rig, or hang a plumb line in the picture",
 )
 
@@ -90,7 +90,7 @@ LOOSE_LOAD = Effect(
     parameter="part_of_inertia",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="the hung mass is tied loosely: it does not move with the beam as one body",
+    sentence="the hung mass is attached loosely: it does not move with the beam as one body",
     remedy="clamp or glue the mass to the end face, and repeat",
 )
 
@@ -99,7 +99,7 @@ HELD_POSE = Effect(
     parameter="below_straight_mm",
     per_unit=1e3,
     belongs_to="rig",
-    sentence="the beam was not held straight before it was let go",
+    sentence="the beam was not held straight before its release",
     remedy="hold it against a straight edge, or photograph it as it is held",
 )
 
@@ -108,7 +108,7 @@ RUBBING_LOAD = Effect(
     parameter="held_by_friction_mm",
     per_unit=1e3,
     belongs_to="rig",
-    sentence="what hangs on the beam rubs where it is fixed (dry friction), and damps the beam",
+    sentence="dry friction where the hung mass is attached damps the beam",
     remedy="glue the mass to the end face, or let the beam vibrate with a mass that is cast in",
 )
 
@@ -117,8 +117,8 @@ AIR_DRAG = Effect(
     parameter="rate_per_s",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="something beside the material drags on the moving beam",
-    remedy="let it vibrate in other air (a box, a vacuum), and with other masses",
+    sentence="a drag in proportion to mass and velocity (air) damps the beam, in addition to the material",
+    remedy="let it vibrate in a box or a vacuum, and with other masses",
 )
 
 PLATEN_FRICTION = Effect(
@@ -126,7 +126,7 @@ PLATEN_FRICTION = Effect(
     parameter="mu_d_over_3h",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="friction at the platens holds the ends of the compressed specimen",
+    sentence="friction at the platens restrains the ends of the compressed specimen",
     remedy="lubricate the platens, or compress cylinders of two heights",
 )
 
@@ -135,8 +135,8 @@ PLATEN_BONDING = Effect(
     parameter="part_of_bonded",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="the platens hold the ends of the compressed cylinder by friction or adhesion",
-    remedy="lubricate the platens and repeat, or press cylinders of two heights",
+    sentence="the platens restrain the ends of the compressed cylinder by friction or adhesion",
+    remedy="lubricate the platens and repeat, or compress cylinders of two heights",
 )
 
 PLATEN_SLIP = Effect(
@@ -144,8 +144,8 @@ PLATEN_SLIP = Effect(
     parameter="coefficient",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="the ends of the compressed cylinder rub at the platens, and slip in part (Coulomb friction)",
-    remedy="lubricate the platens and repeat, or press cylinders of two heights",
+    sentence="the ends of the compressed cylinder slip in part on the platens, with Coulomb friction",
+    remedy="lubricate the platens and repeat, or compress cylinders of two heights",
 )
 
 PLATEN_TILT = Effect(
@@ -171,7 +171,7 @@ MACHINE_COMPLIANCE = Effect(
     parameter="strain_per_MPa",
     per_unit=1e6,
     belongs_to="rig",
-    sentence="the rig gives way, and its travel is taken for the specimen's",
+    sentence="the rig is compliant, and its deformation is taken for the specimen's",
     remedy="measure the strain on the specimen itself (gauge marks), or test a steel bar in the same grips",
 )
 
@@ -189,8 +189,8 @@ ROD_ANGLE = Effect(
     parameter="tilt_deg",
     per_unit=57.29577951308232,
     belongs_to="rig",
-    sentence="the rod leans more than believed",
-    remedy="put a square against the rod, or record the force across it too",
+    sentence="the indenter is inclined more than stated",
+    remedy="put a square against the indenter, or record the force across it too",
 )
 
 FRICTION = Effect(
@@ -198,8 +198,8 @@ FRICTION = Effect(
     parameter="coefficient_above_0.6",
     per_unit=1.0,
     belongs_to="rig",
-    sentence="rod and block rub less, or more, than believed",
-    remedy="powder the rod, or glue sandpaper on it, and poke the same place again",
+    sentence="the friction between indenter and block is smaller, or larger, than assumed",
+    remedy="powder the indenter, or glue sandpaper on it, and indent the same point again",
 )
 
 DEPTH_OFFSET = Effect(
@@ -207,6 +207,6 @@ DEPTH_OFFSET = Effect(
     parameter="offset_mm",
     per_unit=1e3,
     belongs_to="rig",
-    sentence="the zero of the depth is off: the rod is deeper, or less deep, than the record says",
+    sentence="the zero of the depth is off: the indenter is deeper, or less deep, than recorded",
     remedy="begin the record above the surface, so that the first touch is in it",
 )

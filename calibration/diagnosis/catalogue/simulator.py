@@ -10,7 +10,7 @@ LOCKING = Effect(
     per_unit=1.0,
     belongs_to="simulator",
     sentence="the simulator's elements lock: its beams are too stiff",
-    remedy="use elements with a pressure of their own; refine the mesh to see the answer move",
+    remedy="use elements with an independent pressure; refine the mesh to see the result change",
 )
 
 COARSE_MESH = Effect(
@@ -19,7 +19,7 @@ COARSE_MESH = Effect(
     per_unit=1.0,
     belongs_to="simulator",
     sentence="the simulator's mesh is too coarse",
-    remedy="refine the mesh until the answer stands still",
+    remedy="refine the mesh until the result no longer changes",
 )
 
 NOT_AT_EQUILIBRIUM = Effect(
@@ -28,5 +28,5 @@ NOT_AT_EQUILIBRIUM = Effect(
     per_unit=1.0,
     belongs_to="simulator",
     sentence="the simulator stops before its beams are at rest",
-    remedy="judge rest by the force that is out of balance, not by how slowly the beam moves",
+    remedy="judge rest by the residual force, not by the velocity of the beam",
 )

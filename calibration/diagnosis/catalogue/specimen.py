@@ -54,7 +54,7 @@ RESIDUAL_CURVATURE = Effect(
     parameter="curvature_per_m",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the specimen is bent without any load, as it came out of its mould",
+    sentence="the specimen has residual curvature from casting: it is bent without any load",
     remedy="turn the beam by 180 degrees about its axis: a bend changes sign",
 )
 
@@ -73,7 +73,7 @@ SKIN = Effect(
     per_unit=1.0,
     belongs_to="specimen",
     sentence="the surface is stiffer or softer than the core",
-    remedy="cut the beam and press both sides; refine the mesh to tell it from locking elements",
+    remedy="cut the beam and indent both sides; refine the mesh to distinguish it from locking elements",
 )
 
 SET_BETWEEN_TESTS = Effect(
@@ -81,7 +81,7 @@ SET_BETWEEN_TESTS = Effect(
     parameter="length_percent_per_test",
     per_unit=100.0,
     belongs_to="specimen",
-    sentence="the specimen had not come back to its length between tests: each begins with more set",
+    sentence="the specimen had not recovered between tests: each begins with more permanent set",
     remedy="measure its height before each test, or wait ten times as long between them",
 )
 
@@ -91,7 +91,7 @@ TEST_ORDER = Effect(
     per_unit=100.0,
     belongs_to="specimen",
     sentence="the stress changes with the number of the test: the specimen ages, heals or wears, or the load"
-    " cell wanders",
+    " cell drifts",
     remedy="load a second specimen as often, and weigh the load cell before each test",
 )
 
@@ -100,7 +100,7 @@ ADDED_MASS = Effect(
     parameter="mass_g",
     per_unit=1e3,
     belongs_to="specimen",
-    sentence="another mass hangs on the free end than stated",
+    sentence="the mass on the free end is not as stated",
     remedy="look at the free end; weigh the beam",
 )
 
@@ -109,7 +109,7 @@ THICKNESS = Effect(
     parameter="excess_percent",
     per_unit=100.0,
     belongs_to="specimen",
-    sentence="the block is thicker, or thinner, than believed",
+    sentence="the block is thicker, or thinner, than stated",
     remedy="measure the block with callipers",
 )
 
@@ -118,8 +118,8 @@ ADHESION = Effect(
     parameter="pull_mN",
     per_unit=1e3,
     belongs_to="specimen",
-    sentence="the surface sticks to the rod and pulls it on the way back",
-    remedy="record the way back until the rod is free; powder the surface and repeat",
+    sentence="the surface adheres to the indenter and pulls it during retraction",
+    remedy="record the retraction until the indenter is free; powder the surface and repeat",
 )
 
 INCLUSION_DEBONDED = Effect(
@@ -127,8 +127,8 @@ INCLUSION_DEBONDED = Effect(
     parameter="loose_part",
     per_unit=1.0,
     belongs_to="specimen",
-    sentence="the soft material has come off the inclusion",
-    remedy="pull at the surface above the inclusion, or poke a place far from it",
+    sentence="the soft material has detached from the inclusion",
+    remedy="pull at the surface above the inclusion, or indent a point far from it",
 )
 
 INCLUSION_MISPLACED = Effect(
@@ -136,6 +136,6 @@ INCLUSION_MISPLACED = Effect(
     parameter="shift_mm",
     per_unit=1e3,
     belongs_to="specimen",
-    sentence="the inclusion lies elsewhere than believed",
-    remedy="poke around the inclusion at several places, or look at it by ultrasound",
+    sentence="the inclusion is not at its stated position",
+    remedy="indent several points around the inclusion, or locate it by ultrasound",
 )

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._numerics import rms_of
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.measurements._state import State
@@ -54,7 +55,7 @@ class DrawnCurve:
 
 
 def rms_of_all(curves: Sequence[DrawnCurve], which: str) -> float:
-    return float(np.sqrt(np.mean(np.concatenate([c.left(which) for c in curves]) ** 2)))
+    return rms_of(c.left(which) for c in curves)
 
 
 def shown_explanation(diagnosis: Diagnosis) -> Explanation | None:

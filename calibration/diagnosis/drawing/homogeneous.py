@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from calibration._numerics import rms_of
 from calibration.diagnosis.drawing._curves import DrawnCurve, before_and_after, legend_of, most_telling
 from calibration.diagnosis.drawing._domain import Figure, Section, figures_of
 from calibration.diagnosis.drawing._panels import (
@@ -28,8 +29,8 @@ from calibration.pages import COLOURS, INK
 Array = NDArray[np.float64]
 
 Kind = Literal["loading", "unloading", "loading again"]
-SEEN = 0.03  # of a record's largest stress: a departure that shows between its curves
-DOTS = 12  # a branch, where what is left is drawn
+SEEN = 0.03  # fraction of a record's largest stress: a difference that is visible between its curves
+DOTS = 12  # points of a branch in the figure of residuals
 LOOK: dict[Kind, str] = {"loading": COLOURS[0], "unloading": COLOURS[1], "loading again": COLOURS[2]}
 _KPA = 1e-3
 UNIT = ("kPa", _KPA)
@@ -95,7 +96,7 @@ def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[F
             after,
             quantity="stress",
             unit=UNIT,
-            noise=float(np.sqrt(np.mean(np.concatenate([d.sd for d in records]) ** 2))),
+            noise=rms_of(d.sd for d in records),
             dashed="the points' own error",
         ),
     ]

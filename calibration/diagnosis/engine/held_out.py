@@ -225,7 +225,7 @@ def _choice(model: MeasurementModel, baseline: Fit, chosen: Fit) -> _Choice:
                 name=name,
                 folds=[folds[k] for k in some],
                 kept=float(kept[some].min()),
-                note="Not predicted, since the others tell too little of the effect, or it does not act"
+                note="Not predicted, since the others do not determine the effect, or it does not act"
                 f" there: {left}.",
             )
     least = min(abs(value) / sd for value, sd in map(chosen.amplitude, chosen.candidates))

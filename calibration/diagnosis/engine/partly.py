@@ -161,7 +161,7 @@ def _judge(
         against.append(f"it explains less than {100.0 * rules.least_share:.0f} % of the misfit beyond noise")
     elif at_least < rules.least_share_low:
         against.append(
-            f"over {shares.groups.over} its share is not reliably"
+            f"over {shares.groups.over} its explained fraction is not reliably"
             f" {100.0 * rules.least_share_low:.0f} % or more"
         )
     if within_smooth_error(model, baseline, noise, rules):
@@ -212,8 +212,8 @@ def _held_out(held_out: HeldOut, explanation: Explanation, at_least: float, rule
             found.append(f"the amplitude of {c.effect} changes with the part that is left out")
     if held_out.within and at_least < rules.least_share_within_test:
         found.append(
-            f"measurements could be held out only from within the tests, where its share must reliably be"
-            f" {100.0 * rules.least_share_within_test:.0f} %"
+            f"measurements could be held out only from within the tests, where its explained fraction must"
+            f" reliably be {100.0 * rules.least_share_within_test:.0f} %"
         )
     return found
 

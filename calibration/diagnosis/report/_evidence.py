@@ -15,8 +15,8 @@ from calibration.diagnosis.report._words import headline
 from calibration.pages import BAND, COLOURS, FAINT, INK, Picture, paper, picture, plain, significant
 
 CONFIRMED, SCREENED, NAMED = COLOURS[0], "#C3CBD3", COLOURS[1]
-ALARM, RARE = 0.05, Rules().false_alarm_rate  # chances of noise alone, drawn as lines
-RIVAL = 6.0  # of chi-square: what comes as near to the best is not told from it
+FREQUENT, RARE = 0.05, Rules().false_alarm_rate  # rates of false alarms, drawn as lines
+ALTERNATIVE = 6.0  # difference of chi-square from the best, up to which a cause is an alternative to it
 _MOST = 40  # bars
 
 
@@ -111,14 +111,14 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
         if here.any():
             axes.barh(rows[here], drawn[here], height=0.7, color=colour, label=text, zorder=2)
     noise = finding.null.max_improvement(finding.screened)
-    for chance, line in ((ALARM, ":"), (RARE, "--")):
+    for p_value, line in ((FREQUENT, ":"), (RARE, "--")):
         axes.axvline(
-            np.sqrt(noise.threshold(chance)),
+            np.sqrt(noise.threshold(p_value)),
             color=INK,
             lw=1.1,
             ls=line,
             zorder=3,
-            label=f"noise alone exceeds this in {chance:.0%} of experiments",
+            label=f"noise alone exceeds this in {p_value:.0%} of experiments",
         )
     for y, b in zip(rows, shown, strict=True):
         axes.text(
@@ -138,8 +138,10 @@ def _gains(axes: Any, shown: Sequence[Bar], finding: Finding) -> None:
 
 def _behind(axes: Any, shown: Sequence[Bar]) -> None:
     plain(axes).tick_params(labelleft=False, left=False)
-    axes.axvspan(0.0, RIVAL, color=BAND, lw=0, zorder=0, label=f"within {RIVAL:g}: cannot be separated")
-    axes.axvline(RIVAL, color=INK, lw=1.1, ls="--", zorder=3)
+    axes.axvspan(
+        0.0, ALTERNATIVE, color=BAND, lw=0, zorder=0, label=f"within {ALTERNATIVE:g}: cannot be separated"
+    )
+    axes.axvline(ALTERNATIVE, color=INK, lw=1.1, ls="--", zorder=3)
     reach = 30.0
     for y, b in enumerate(shown):
         if b.behind is None:

@@ -4,31 +4,31 @@ from __future__ import annotations
 
 from calibration.diagnosis.engine.null import LackOfFit
 from calibration.diagnosis.engine.verdict import Diagnosis
-from calibration.diagnosis.report._evidence import ALARM, RARE
+from calibration.diagnosis.report._evidence import FREQUENT, RARE
 from calibration.diagnosis.report._words import SUSPECT, p_text, pattern, tiny
 from calibration.measurements._model import MeasurementModel
 from calibration.pages import listed, significant
 
 
 def false_alarms(diagnosis: Diagnosis) -> str:
-    """What chance alone has to do with the best cause."""
+    """Sentences on the improvement that noise alone gives, and on the p-value of the best cause."""
     finding = diagnosis.finding
     noise = finding.null.max_improvement(finding.screened)
     limits = (
         f"In this design noise alone gives the best of all {len(finding.screened.candidates)} candidates more"
-        f" than {significant(noise.threshold(ALARM))} in {ALARM:.0%} and more than"
+        f" than {significant(noise.threshold(FREQUENT))} in {FREQUENT:.0%} and more than"
         f" {significant(noise.threshold(RARE))} in {RARE:.0%} of experiments."
     )
     single = [e for e in finding.explanations if len(e.candidates) == 1]
     if not single:
         return f"{limits} No cause explained enough to be fitted in the simulator."
-    chance = tiny(finding.p_value)
+    p_value = tiny(finding.p_value)
     if noise.estimated:
-        chance = p_text(finding.p_value, len(finding.null.noise))
+        p_value = p_text(finding.p_value, len(finding.null.noise))
     gain = max(finding.baseline.chi2 - e.fit.chi2 - e.multiplicity_penalty for e in single)
     return (
         f"{limits} The best single cause improves χ² by {significant(max(0.0, gain))}, after the"
-        f" penalty for the choice of its position; the p-value is {chance}."
+        f" penalty for the choice of its position; the p-value is {p_value}."
     )
 
 

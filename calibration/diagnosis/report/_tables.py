@@ -19,7 +19,7 @@ BUDGET = (
     "description",
     "scope",
     "amplitude ± sd",
-    "share of the misfit",
+    "explained fraction of the misfit",
     "belongs to",
     "evidence",
     "to confirm",

@@ -85,7 +85,7 @@ def scope(at: str) -> str:
 
 
 def p_text(p: float, draws: int) -> str:
-    """A chance to two digits; what the bootstrap cannot resolve, as a bound."""
+    """A p-value to two digits; one that the bootstrap cannot resolve, as a bound."""
     finest = 1.0 / (draws + 1)
     if p <= 1.001 * finest:
         return f"≤ {significant(finest, 2)}"

@@ -36,8 +36,8 @@ Array = NDArray[np.float64]
 COLUMNS = 16  # columns of a tilted cylinder
 # Quadrature over chords of a disc: position from the edge that touches first (0) to the last (1), and weight
 _ANGLES = np.pi * np.arange(1, COLUMNS + 1) / (COLUMNS + 1)
-_PLACES = 0.5 * (1.0 - np.cos(_ANGLES))
-_SHARES = np.sin(_ANGLES) ** 2 / np.sum(np.sin(_ANGLES) ** 2)
+_POSITIONS = 0.5 * (1.0 - np.cos(_ANGLES))
+_WEIGHTS = np.sin(_ANGLES) ** 2 / np.sum(np.sin(_ANGLES) ** 2)
 
 
 class CompressionModel(HomogeneousModel):
@@ -121,7 +121,7 @@ class CompressionModel(HomogeneousModel):
         level = []
         for x, s in zip(loadings, stretches, strict=True):
             gap = _amount(x, "tilts")
-            met = s + gap * _PLACES[:, None] if gap else s
+            met = s + gap * _POSITIONS[:, None] if gap else s
             # a column before contact carries no force; with a course, `balanced` treats loss of contact
             remembers = x.record.course is not None
             level.append(np.minimum(met, 1.0) if is_compressed(x.record) and not remembers else met)
@@ -135,7 +135,7 @@ class CompressionModel(HomogeneousModel):
             if held[k]:
                 rubbed = self._rubbed(s, _amount(x, "rubs"), log_ratios[k])
                 p = p * np.exp(_amount(x, "bonds") * log_ratios[k] + rubbed)
-            found.append(_SHARES @ p if p.ndim == 2 else p)
+            found.append(_WEIGHTS @ p if p.ndim == 2 else p)
         return found
 
     def _log_ratios(
@@ -195,9 +195,10 @@ class CompressionModel(HomogeneousModel):
         found = [
             *super().remarks(),
             f"cylinders taken as {size} (diameter x height){unstated};"
-            " only the quotient counts, and only where platens hold",
-            "platens that hold in part are taken between free (0) and bonded ones (1), which are simulated,"
-            " and up to 1.1, since the simulation has an error; Coulomb friction itself is not simulated",
+            " only the quotient counts, and only where platens are bonded",
+            "platens that are bonded in part are interpolated between free (0) and bonded ones (1), which are"
+            " simulated, and up to 1.1, since the simulation has an error; Coulomb friction itself is not"
+            " simulated",
         ]
         cut = self._cut()
         if cut:
@@ -221,7 +222,8 @@ class CompressionModel(HomogeneousModel):
             ]
         else:
             found.append(
-                "too few repeats to tell how much one test differs from the next: no such scatter allowed"
+                "too few repeats to estimate how much one test differs from the next: no such scatter is"
+                " allowed"
             )
         return found
 

@@ -1,7 +1,7 @@
 """Homogeneous material tests (coupons): nominal stress without a mesh, weights and windows of records."""
 
+from calibration.measurements.homogeneous._branches import protocol_window
 from calibration.measurements.homogeneous._forward import predicted
-from calibration.measurements.homogeneous._record import protocol_window
 from calibration.measurements.homogeneous._scatter import (
     SMALLEST_RELATIVE,
     grows,

@@ -24,7 +24,7 @@ from calibration.measurements.homogeneous._balance import LATERAL, SHEAR, Memory
 from calibration.measurements.homogeneous._course import Course
 from calibration.measurements.homogeneous.stress import DRIVEN
 from tisim import Material, laws
-from tisim.parts import MaterialPoints
+from tisim.parts import MaterialPoints, ramp_weight
 
 Array = NDArray[np.float64]
 Test = tuple[CouponMode, Course, Array]  # mode, course, stretch (f,) along it
@@ -132,7 +132,7 @@ def _memory(material: Material, tests: Sequence[Test], begins: NDArray[np.intp])
     return Memory(
         equilibrium=spectrum.equilibrium,
         decays=decays,
-        gains=spectrum.strengths * ramp_weights(h),
+        gains=spectrum.strengths * ramp_weight(h),
         begins=begins,
     )
 
@@ -150,9 +150,3 @@ def _relaxing(S: Array, memory: Memory) -> Array:
     found = np.zeros_like(S)
     found[:, _AXIS, _OTHER] = total
     return found
-
-
-def ramp_weights(h: Array) -> Array:
-    """(1 - exp(-h))/h, and 1 at h = 0: weight of a linear change over h relaxation times."""
-    safe = np.where(h > 0.0, h, 1.0)
-    return np.where(h > 0.0, -np.expm1(-safe) / safe, 1.0)

@@ -12,27 +12,29 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import CouponMode, CouponTrial, specimen_of
-from calibration.measurements._course import NOISE, bins_over_time
-from calibration.measurements._records import Stroke, bins, strokes
-from calibration.measurements.homogeneous._course import (
-    Course,
-    course_of,
-    holds_of,
-    largest_before,
-    window_of,
+from calibration.measurements._course import bins_over_time
+from calibration.measurements._records import bins
+from calibration.measurements.homogeneous._branches import (
+    branches_of,
+    loads_again,
+    rates_of,
+    unloading_points,
 )
-from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE, grows, slope, unstated_sd
+from calibration.measurements.homogeneous._course import Course, course_of, holds_of, largest_before
+from calibration.measurements.homogeneous._point_sd import (
+    scatter_points,
+    stress_sd,
+    with_stretch_error,
+    with_stretch_error_over_time,
+)
 from calibration.measurements.homogeneous.kinematics import first_excess
-from calibration.parameters import ProtocolWindow
 
 Array = NDArray[np.float64]
 # from the mode and the stretch (k,) of a record's points: mask of those that are compared
 Selects = Callable[[CouponMode, Array], NDArray[np.bool_]]
 
 MOST = 100  # largest number of points of a branch: more are averaged in bins of neighbours
-TURN = 0.03  # least reversal at a turning point, as a fraction of the record's range
 SAME_REACH, SAME_RATE = 0.05, 1.2  # relative difference of strain, and ratio of rates, between repeats
-LATE = 0.3  # time after the end of a ramp, as a fraction of its duration, from which a hold begins
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -176,12 +178,18 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
     excess = first_excess(trial.mode, trial.stretch)
     turn = np.full(excess.size, np.nan)
     for b in parts[1:]:
-        unloading = _unloading(trial, b)
+        unloading = unloading_points(trial, b)
         turn[b.points] = np.where(unloading, excess[b.points.start], np.nan)
     raw_time = np.full(excess.size, np.nan) if trial.time is None else trial.time
-    raw_rate = rates_of(trial, parts)
     peak = np.maximum.accumulate(np.maximum(excess, before))
-    rows: dict[str, list[Array]] = {n: [] for n in _AVERAGED}
+    raw = {
+        "stretch": trial.stretch,
+        "stress": trial.stress,
+        "time": raw_time,
+        "turn": turn,
+        "peak": peak,
+        "rate": rates_of(trial, parts),
+    }
     means: list[Mapping[str, Array]] = []
     numbers, firsts, counts, samples = [], [], [], []
     for n, b in enumerate(parts):
@@ -193,33 +201,25 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
         samples.append(np.add.reduceat(weight[b.points], first))
         firsts.append(b.points.start + first)
         counts.append(count)
-        raw = {
-            "stretch": trial.stretch,
-            "stress": trial.stress,
-            "time": raw_time,
-            "turn": turn,
-            "peak": peak,
-            "rate": raw_rate,
-        }
         means.append({k: np.add.reduceat((weight * x)[b.points], first) / samples[n] for k, x in raw.items()})
-        for name in _AVERAGED:
-            rows[name].append(means[n][name])
         numbers.append(np.full(first.size, float(n)))
-    whole: dict[str, Any] = {name: np.concatenate(parts_) for name, parts_ in rows.items()}
+    whole: dict[str, Any] = {name: np.concatenate([m[name] for m in means]) for name in raw}
     kept = selects(trial.mode, whole["stretch"])
     used = np.repeat(kept, np.concatenate(counts).astype(int))
-    own_sd = _own_sd(trial, parts, raw_time if timed else trial.stretch, means, counts, samples, used)
+    own_sd = stress_sd(trial, parts, raw_time if timed else trial.stretch, means, counts, samples, used)
     sd = np.concatenate(
         [
-            _sd_over_time(trial, b, holds, means[n], firsts[n] - b.points.start, samples[n], own)
+            with_stretch_error_over_time(
+                trial, b, holds, means[n], firsts[n] - b.points.start, samples[n], own
+            )
             if timed
-            else _sd(trial, means[n]["stretch"], means[n]["stress"], samples[n], own)
+            else with_stretch_error(trial, means[n]["stretch"], means[n]["stress"], samples[n], own)
             for (n, b), own in zip(enumerate(parts), own_sd, strict=True)
         ]
     )
     if not (np.isfinite(sd) & (sd > np.finfo(float).tiny)).all():
         raise InputError(f"trials.{trial.id}: expected some stress that is not 0, or a stated stress_sd_kPa")
-    again = before > 0.0 or bool(np.isfinite(turn).any() and _loads_again(turn))
+    again = before > 0.0 or bool(np.isfinite(turn).any() and loads_again(turn))
     return Record(
         name=trial.id,
         material=trial.material,
@@ -230,7 +230,7 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
         reloaded=again,
         remembers=before > 0.0,
         estimated=trial.stress_sd is None,
-        scatter_points=_scatter_points(trial, sd[kept], used),
+        scatter_points=scatter_points(trial, sd[kept], used),
         ranges=_ranges(trial, used if used.any() else ~used),
         course=None
         if furthest is None
@@ -239,169 +239,10 @@ def _record(trial: CouponTrial, before: float, furthest: float | None, selects: 
     )
 
 
-_AVERAGED = ("stretch", "stress", "time", "turn", "peak", "rate")
-
-
 def _ranges(trial: CouponTrial, used: NDArray[np.bool_]) -> dict[str, tuple[float, float]]:
     """Ranges of a trial's points that are compared, by the quantity's name in files."""
     measured = {"stretch": trial.stretch} | ({} if trial.time is None else {"time_s": trial.time})
     return {name: (float(x[used].min()), float(x[used].max())) for name, x in measured.items()}
-
-
-def _unloading(trial: CouponTrial, b: Stroke) -> NDArray[np.bool_]:
-    """Mask of a branch's points that return towards rest; beyond rest, and beyond noise, they load again."""
-    s = trial.stretch[b.points]
-    noise = turning(trial)
-    gone = b.direction * (s - 1.0)
-    if gone[0] > -noise:
-        return np.zeros(s.size, dtype=bool)
-    return np.full(s.size, True) if gone.max() <= noise else gone < 0.0
-
-
-def _loads_again(turn: Array) -> bool:
-    """True if a loading follows an unloading."""
-    unloading = np.isfinite(turn)
-    return bool((~unloading[int(np.argmax(unloading)) :]).any())
-
-
-def _sd(trial: CouponTrial, stretch: Array, stress: Array, samples: Array, own: Array) -> Array:
-    """Standard deviation of the means in a branch's bins [Pa], including the stretch error.
-
-    samples : number of samples of the record in each bin; own : error of the stress alone.
-    """
-    if trial.stretch_sd == 0.0:
-        return own
-    return np.asarray(
-        np.hypot(own, slope(stretch, stress, trial.stretch_sd) * trial.stretch_sd / np.sqrt(samples))
-    )
-
-
-def _sd_over_time(
-    trial: CouponTrial,
-    b: Stroke,
-    holds: Sequence[slice],
-    mean: Mapping[str, Array],
-    first: NDArray[np.intp],
-    samples: Array,
-    own: Array,
-) -> Array:
-    """As `_sd`; a hold has the slope of the last ramp."""
-    if trial.stretch_sd == 0.0:
-        return own
-    rows = b.points.start + first
-    moves = ~np.array([any(h.start <= i < h.stop for h in holds) for i in rows])
-    if np.count_nonzero(moves) < 5:
-        return own
-    slopes = slope(mean["stretch"][moves], mean["stress"][moves], trial.stretch_sd)
-    last = np.maximum(np.cumsum(moves) - 1, 0)
-    return np.asarray(np.hypot(own, slopes[last] * trial.stretch_sd / np.sqrt(samples)))
-
-
-def _own_sd(
-    trial: CouponTrial,
-    parts: Sequence[Stroke],
-    over: Array,
-    means: Sequence[Mapping[str, Array]],
-    counts: Sequence[Array],
-    samples: Sequence[Array],
-    used: NDArray[np.bool_],
-) -> list[Array]:
-    """Standard deviation of the stress alone [Pa] of the means in each branch's bins.
-
-    An error estimated from the scatter is at least SMALLEST_RELATIVE of the record's largest stress, for any
-    number of averaged points. Whether it grows with the stress is a question to the whole record.
-
-    Parameters
-    ----------
-    over : abscissa of the trial, for the scatter about a smooth curve.
-    counts, samples : of points, and of samples of the record, in each bin.
-    used : mask of the trial's points that are compared.
-    """
-    if trial.stress_sd is not None:
-        return [np.asarray(trial.stress_sd / np.sqrt(n)) for n in samples]
-    curves = [(over[b.points][used[b.points]], trial.stress[b.points][used[b.points]]) for b in parts]
-    relative, least = grows(curves), _least_sd(trial)
-    return [
-        np.maximum(unstated_sd(*curve, mean["stress"], count, relative=relative), least)
-        for curve, mean, count in zip(curves, means, counts, strict=True)
-    ]
-
-
-def _least_sd(trial: CouponTrial) -> float:
-    """Least standard deviation of a stress that the lab does not state [Pa].
-
-    A load cell is accurate to a fraction of its range, which held the whole record, not of each reading, or
-    of the part that is compared (studies/compression/diagnosis.md).
-    """
-    return SMALLEST_RELATIVE * float(np.abs(trial.stress).max(initial=0.0))
-
-
-ASSUMED = 3  # as if from the scatter of so few points: nearly nothing is known of an sd that is assumed
-
-
-def _scatter_points(trial: CouponTrial, sd: Array, used: NDArray[np.bool_]) -> int:
-    """See `Record.scatter_points`; sd : of the means that are compared, used : mask of the trial's points."""
-    if trial.stress_sd is not None:
-        return 0
-    if len(np.unique((trial.stretch if trial.time is None else trial.time)[used])) < FEWEST:
-        return ASSUMED
-    scatters = float(np.median(sd)) > 1.01 * _least_sd(trial)
-    return int(np.count_nonzero(used)) if scatters else 0
-
-
-def turning(trial: CouponTrial) -> float:
-    """Least reversal of the stretch at a turning point."""
-    return max(TURN * float(np.ptp(trial.stretch)), NOISE * trial.stretch_sd)
-
-
-def branches_of(trial: CouponTrial) -> list[Stroke]:
-    """Strokes in the order of the record, each with the sign of its net change of stretch (1 if 0)."""
-    x = trial.stretch
-    found = []
-    for s in strokes(x, turning(trial)):
-        last = min(s.points.stop, x.size - 1)
-        found.append(Stroke(points=s.points, direction=float(np.sign(x[last] - x[s.points.start]) or 1.0)))
-    return found
-
-
-def protocol_window(trials: Sequence[CouponTrial]) -> ProtocolWindow:
-    """Range of the times of ramps and holds, and number of peak strains, that tests cover."""
-    return window_of(trials, [branches_of(t) for t in trials])
-
-
-def rates_of(trial: CouponTrial, parts: Sequence[Stroke]) -> Array:
-    """|d stretch / d time| of each point [1/s].
-
-    It is the mean of the ramp between 10 and 90 % of its stretch, so that noise does not enter. In a hold it
-    is the ramp's stretch over the time since the ramp began, which falls as 1/time. NaN without a clock.
-    """
-    found = np.full(trial.stretch.size, np.nan)
-    if trial.time is None:
-        return found
-    begun, travelled = 0.0, 0.0  # start and stretch of the preceding ramp
-    for b in parts:
-        x, t = trial.stretch[b.points], trial.time[b.points]
-        reach = slice(b.points.start, min(b.points.stop + 1, trial.stretch.size))
-        travel = float(np.ptp(trial.stretch[reach]))
-        done = np.abs(x - x[0])
-        early = np.flatnonzero(done <= 0.1 * travel)
-        late = np.flatnonzero(done >= 0.9 * travel)
-        if travel == 0.0 or not late.size or t[late[0]] <= t[early[-1]]:
-            continue
-        between = float(t[late[0]] - t[early[-1]])
-        made = float(done[late[0]] - done[early[-1]])
-        rate = made / between
-        start = float(t[early[-1]]) - done[early[-1]] / rate
-        end = start + travel / rate
-        here = np.full(x.size, rate)
-        held = t > end + LATE * between
-        here[held] = travel / (t[held] - start)
-        if travelled > 0.0:  # the preceding hold continues
-            held = t < start - LATE * between
-            here[held] = travelled / (t[held] - begun)
-        found[b.points] = here
-        begun, travelled = start, travel
-    return found
 
 
 def protocol(r: Record) -> tuple[str, int, float, float]:

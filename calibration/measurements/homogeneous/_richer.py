@@ -34,11 +34,21 @@ class RicherLaw:
     Attributes
     ----------
     law : the law in search coordinates.
+    shear_moduli : shear modulus of each specimen by the law's own fit [Pa].
     centres : start values of all coordinates of the law by material; the first modulus is REFERENCE.
     """
 
     law: Parametrisation
+    shear_moduli: Mapping[str, float]
     centres: Mapping[str, Array]
+
+    @classmethod
+    def fitted(
+        cls, law: Parametrisation, records: Sequence[Record], materials: Sequence[str], *, bulk_ratio: float
+    ) -> RicherLaw:
+        """The law, fitted to the records of each material (`law_starts`)."""
+        shear_moduli, centres = law_starts(law, records, materials, bulk_ratio=bulk_ratio)
+        return cls(law=law, shear_moduli=shear_moduli, centres=centres)
 
     @cached_property
     def free(self) -> tuple[int, ...]:
@@ -142,6 +152,24 @@ def law_start(
     return {s: scale * x for s, x in real.scales(u).items()}, u
 
 
+def law_starts(
+    law: Parametrisation, records: Sequence[Record], materials: Sequence[str], *, bulk_ratio: float
+) -> tuple[dict[str, float], dict[str, Array]]:
+    """Shear moduli by specimen [Pa], and coordinates of the law by material, from `law_start` of each.
+
+    ValueError if the law has no solution for a material.
+    """
+    moduli: dict[str, float] = {}
+    coordinates: dict[str, Array] = {}
+    for m in materials:
+        found = law_start(law, [r for r in records if r.material == m], bulk_ratio=bulk_ratio)
+        if found is None:
+            raise ValueError(f"{law.label}: no stress at the stretches of {m}")
+        moduli |= found[0]
+        coordinates[m] = found[1]
+    return moduli, coordinates
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Curves:
     """Measured curves of a material for the comparison with a law.
@@ -236,19 +264,11 @@ def _cost(z: Array) -> float:
 
 
 def start_of(baseline: Baseline, records: Sequence[Record], *, bulk_ratio: float) -> Array:
-    """Start coordinates u of a baseline: best fit of each material by itself at this K/G (`law_start`).
+    """Start coordinates u of a baseline: best fit of each material by itself at this K/G (`law_starts`).
 
     ValueError if the law has no solution.
     """
-    moduli: dict[str, float] = {}
-    laws: dict[str, Array] = {}
-    for m in baseline.materials:
-        own = [r for r in records if r.material == m]
-        found = law_start(baseline.law, own, bulk_ratio=bulk_ratio)
-        if found is None:
-            raise ValueError(f"{baseline.law.label}: no stress at the stretches of {m}")
-        moduli |= found[0]
-        laws[m] = found[1]
+    moduli, laws = law_starts(baseline.law, records, baseline.materials, bulk_ratio=bulk_ratio)
     return np.concatenate(
         [
             [np.log(moduli[s]) for s in baseline.specimens],

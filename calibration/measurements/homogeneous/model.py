@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import CouponMode, CouponTrial, Experiment
-from calibration.measurements._baseline import Baseline
+from calibration.measurements._baseline import Baseline, least_squares_moduli
 from calibration.measurements._effect import Candidate
-from calibration.measurements._folds import fifths
+from calibration.measurements._folds import fifths, joined
 from calibration.measurements._memory import Memory
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noise_known import POINTS_PER_FREEDOM
 from calibration.measurements._noisy_model import Shown
-from calibration.measurements._records import listed, over_time
+from calibration.measurements._records import over_time
 from calibration.measurements._state import State
 from calibration.measurements.homogeneous._discrepancies import discrepancies
 from calibration.measurements.homogeneous._effect import HomogeneousEffect
@@ -35,9 +35,10 @@ from calibration.measurements.homogeneous._forward import (
     with_effects,
     yielding,
 )
-from calibration.measurements.homogeneous._record import ASSUMED, Record, everything, protocol, records_of
-from calibration.measurements.homogeneous._richer import RicherLaw, law_start, start_of
-from calibration.measurements.homogeneous._scatter import FEWEST, SMALLEST_RELATIVE
+from calibration.measurements.homogeneous._point_sd import ASSUMED
+from calibration.measurements.homogeneous._record import Record, everything, protocol, records_of
+from calibration.measurements.homogeneous._richer import RicherLaw, start_of
+from calibration.measurements.homogeneous._sentences import assumed_errors, described_noise, remarks_on
 from calibration.measurements.homogeneous.experiments import EXPERIMENTS, CouponTest
 from calibration.measurements.homogeneous.kinematics import stress_of
 from calibration.parameters import Parameters, parametrisation
@@ -125,16 +126,7 @@ class HomogeneousModel(MeasurementModel):
     def _take_richer(self, law: str, terms: int) -> None:
         """Add the constants of a richer law as extras; their centres are from a fit of each material."""
         form = parametrisation(law, terms=terms)
-        centres: dict[str, Array] = {}
-        self._rich_moduli: dict[str, float] = {}
-        for m in self.baseline.materials:
-            own = [r for r in self.records if r.material == m]
-            found = law_start(form, own, bulk_ratio=BULK_RATIO)
-            if found is None:
-                raise ValueError(f"{form.label}: no stress at the stretches of {m}")
-            moduli, centres[m] = found
-            self._rich_moduli |= moduli
-        self.richer = RicherLaw(law=form, centres=centres)
+        self.richer = RicherLaw.fitted(form, self.records, self.baseline.materials, bulk_ratio=BULK_RATIO)
         self.baseline = self._base.baseline = self.baseline.with_extras(self.richer.extras())
         self._rich = BaseStress(replace(self.baseline, law=form, extras=()), bulk_ratio=BULK_RATIO)
 
@@ -170,11 +162,12 @@ class HomogeneousModel(MeasurementModel):
         local steps from the baseline's.
         """
         u = state.u.copy()
-        for c in candidates if self.richer is not None else ():
-            if self.effects[c.effect].richer:
+        moduli = {} if self.richer is None else self.richer.shear_moduli
+        for c in candidates:
+            if moduli and self.effects[c.effect].richer:
                 for r, hit in zip(self.records, self.reached(c), strict=True):
                     if hit:
-                        u[self.baseline.specimens.index(r.specimen)] = np.log(self._rich_moduli[r.specimen])
+                        u[self.baseline.specimens.index(r.specimen)] = np.log(moduli[r.specimen])
         return replace(state, u=u)
 
     def law_in(self, material: str, state: State) -> tuple[str, Parameters] | None:
@@ -213,19 +206,11 @@ class HomogeneousModel(MeasurementModel):
         """
         if self.baseline.free and not self.baseline.whole:
             return start_of(self.baseline, self.records, bulk_ratio=BULK_RATIO)
-        found = {}
-        for name in self.baseline.specimens:
-            top = bottom = 0.0
-            for r in self.records:
-                if r.specimen == name:
-                    unit = stress_of(r.mode, r.stretch, 0.5) / r.sd
-                    top += float(unit @ (r.stress / r.sd))
-                    bottom += float(unit @ unit)
-            if top <= 0.0:
-                raise ValueError(
-                    f"specimen {name}: its stress falls with its stretch, no shear modulus gives that"
-                )
-            found[name] = top / bottom
+        found = least_squares_moduli(
+            ((r.specimen, stress_of(r.mode, r.stretch, 0.5) / r.sd, r.stress / r.sd) for r in self.records),
+            specimens=self.baseline.specimens,
+            falling="its stress falls with its stretch",
+        )
         return self.baseline.start(found)
 
     def stresses(self, state: State) -> list[Array]:
@@ -352,47 +337,22 @@ class HomogeneousModel(MeasurementModel):
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Fold labels by mode, material, trial, branch, and fifth of each record."""
-        found: dict[str, list[str]] = {}
-        for r in self.records:
-            for name, labels in {
+        return joined(
+            {
                 "leave-one-mode-out": [str(r.mode)] * r.points,
                 "leave-one-material-out": [r.material] * r.points,
                 "leave-one-trial-out": [r.name] * r.points,
                 "leave-one-branch-out": [f"{r.name} branch {b + 1:.0f}" for b in r.branch],
                 "leave-one-fifth-out": fifths(r.points),
-            }.items():
-                found.setdefault(name, []).extend(labels)
-        return found
+            }
+            for r in self.records
+        )
 
     def _discrepancies(self) -> Mapping[str, Array]:
         return discrepancies(self.records, self.noise.sd)
 
     def remarks(self) -> list[str]:
-        """Sentences on estimated errors, on single loops, and on the assumed order of trials."""
-        records = self.records
-        found = []
-        guessed = [r for r in records if r.estimated]
-        if guessed:
-            typical = float(np.median(np.concatenate([r.sd / np.abs(r.stress).max() for r in guessed])))
-            found.append(
-                f"the lab states no error of the stress of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of a record's largest stress; its"
-                f" median is {100 * typical:.2g} %. Where points scatter by less about a curve than such an"
-                " error, a reduced chi-square far below 1 is no fault"
-            )
-        loops = [r for r in records if r.unloads and not r.reloaded]
-        if loops:
-            found.append(
-                f"{listed(loops)}: loaded and unloaded once, and one loop cannot tell hysteresis from the"
-                " softening of a first loading (mullins): load the specimen again"
-            )
-        remembering = [r for r in records if r.remembers]
-        if remembering:
-            found.append(
-                f"{listed(remembering)}: taken to follow the trials of the same specimen that the file lists"
-                " before"
-            )
-        return found
+        return remarks_on(self.records)
 
     def repeat_of(self, k: int) -> Hashable | None:
         """Index of the first record of equal mode and number of strokes, with range and rate within ALIKE."""
@@ -432,30 +392,10 @@ class HomogeneousModel(MeasurementModel):
         return found
 
     def shortcomings(self) -> list[str]:
-        few = [r for r in self.records if r.scatter_points == ASSUMED]
-        if not few:
-            return []
-        return [
-            f"the lab states no error of the stress of {listed(few)}, and fewer than {FEWEST} points show no"
-            f" scatter: {100 * SMALLEST_RELATIVE:g} % of the largest stress is assumed, so that a lack of fit"
-            " cannot be told from noise: state stress_sd_kPa"
-        ]
+        return assumed_errors(self.records)
 
     def noise_sentence(self) -> str:
-        stated = [r for r in self.records if not r.estimated]
-        parts = []
-        if stated:
-            parts.append("the stress and stretch errors that the lab states, white from point to point")
-        if len(stated) < len(self.records):
-            parts.append(
-                "where the lab states none, an error from the scatter about a smooth curve, at least 0.5 % of"
-                " the largest stress of the record"
-            )
-        return (
-            f"{len(self.records)} records, {self.points} points (of long records the means of neighbours); "
-            + "; ".join(parts)
-            + "; the shear modulus free for each specimen."
-        )
+        return described_noise(self.records, self.points)
 
     def shown(self, k: int) -> Shown:
         r = self.records[k]

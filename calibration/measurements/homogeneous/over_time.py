@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.measurements._over_time import OverTime, need_clock
-from calibration.measurements.homogeneous._record import protocol_window
+from calibration.measurements.homogeneous._branches import protocol_window
 from calibration.parameters import ProtocolWindow
 
 

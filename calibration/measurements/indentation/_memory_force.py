@@ -18,9 +18,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.measurements.homogeneous._memory_stress import ramp_weights
 from calibration.parameters import Parametrisation
-from tisim.parts import Spectrum, Viscosity
+from tisim.parts import Spectrum, Viscosity, ramp_weight
 
 Array = NDArray[np.float64]
 
@@ -53,7 +52,7 @@ def loads(spectrum: Spectrum, time: Array, depth: Array, met: Array) -> Array:
     """
     steps = np.diff(time, prepend=time[0])
     h = steps[:, None] / spectrum.times
-    decays, gains = np.exp(-h), spectrum.strengths * ramp_weights(h)
+    decays, gains = np.exp(-h), spectrum.strengths * ramp_weight(h)
     stiff = spectrum.equilibrium + gains.sum(axis=1)
     found = np.empty((time.size, met.size))
     w, Q = np.zeros(met.size), np.zeros((spectrum.times.size, met.size))

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import Experiment, PokeTrial
-from calibration.measurements._baseline import Baseline
+from calibration.measurements._baseline import Baseline, least_squares_moduli
 from calibration.measurements._effect import Candidate, reaches
-from calibration.measurements._folds import fifths
+from calibration.measurements._folds import fifths, joined
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
-from calibration.measurements._records import listed, over_time
+from calibration.measurements._records import over_time
 from calibration.measurements._state import State
 from calibration.measurements.indentation._curve import Curve
 from calibration.measurements.indentation._curve_cache import CurveCache
@@ -42,6 +42,7 @@ from calibration.measurements.indentation._memory_force import spectrum_of
 from calibration.measurements.indentation._noise import TOUCH, noise_of
 from calibration.measurements.indentation._record import Record, check_pushed, part_of, records_of
 from calibration.measurements.indentation._scene import BULK_RATIO, FRICTION, geometry_of
+from calibration.measurements.indentation._sentences import described_noise, remarks_on
 from calibration.measurements.indentation.experiments import EXPERIMENTS, IndentationTest
 from tisim.parts import Spectrum
 
@@ -155,21 +156,15 @@ class IndentationModel(MeasurementModel):
 
         ValueError if the modulus of a specimen would not be positive.
         """
-        found = {}
-        for name in self.baseline.specimens:
-            top = bottom = 0.0
-            for r in self.records:
-                if r.specimen == name:
-                    unit = self.forward.base(r).at(r.depth)
-                    first = (r.cycle == 1) & (r.direction > 0)
-                    used = first if first.any() else np.ones(r.points, dtype=bool)
-                    top += float(unit[used] @ r.force[used])
-                    bottom += float(unit[used] @ unit[used])
-            if not top > 0.0:
-                raise ValueError(
-                    f"specimen {name}: its force falls with the depth, no shear modulus gives that"
-                )
-            found[name] = top / bottom
+        used = [_first_loading(r) for r in self.records]
+        found = least_squares_moduli(
+            (
+                (r.specimen, self.forward.base(r).at(r.depth)[mine], r.force[mine])
+                for r, mine in zip(self.records, used, strict=True)
+            ),
+            specimens=self.baseline.specimens,
+            falling="its force falls with the depth",
+        )
         return self.baseline.start(found)
 
     def forces(self, state: State) -> list[Array]:
@@ -332,17 +327,18 @@ class IndentationModel(MeasurementModel):
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Fold labels by trial, material, phase label, and fifth of each record."""
-        found: dict[str, list[str]] = {}
+        found = []
         for k, size in self._row_blocks():
             r = self.records[k]
-            for name, labels in {
+            of_points = {
                 "leave-one-trial-out": [r.name] * r.points,
                 "leave-one-material-out": [r.material] * r.points,
                 "leave-one-phase-out": [r.labels[int(p)] for p in r.phase],
                 "leave-one-fifth-out": fifths(r.points),
-            }.items():
-                found.setdefault(name, []).extend(label for label in labels for _ in range(size // r.points))
-        return found
+            }
+            each = size // r.points
+            found.append({name: np.repeat(labels, each).tolist() for name, labels in of_points.items()})
+        return joined(found)
 
     def _discrepancies(self) -> Mapping[str, Array]:
         across = len(self.row_record) - sum(r.points for r in self.records)
@@ -366,38 +362,10 @@ class IndentationModel(MeasurementModel):
         return list(self._left_out)
 
     def remarks(self) -> list[str]:
-        """Sentences on points left out, estimated errors, assumed order of trials, and missing effects."""
-        found = self.left_out()
-        guessed = [r for r in self.records if r.estimated]
-        if guessed:
-            relative = [
-                float(np.median(r.own_sd * np.sqrt(r.count)) / np.abs(r.force).max()) for r in guessed
-            ]
-            found.append(
-                f"the lab states no error of the force of {listed(guessed)}: it was estimated from the"
-                " scatter about a smooth curve, at least 0.5 % of the force; its median is"
-                f" {100 * float(np.median(relative)):.2g} % of the largest force"
-            )
-        again = [r for r in self.records if r.unloaded[0] > 0.0]
-        if again:
-            text = "taken to follow the indentations of the same specimen that the file lists before"
-            found.append(f"{listed(again)}: {text}")
-        found.append(
-            "the catalogue of indentation has no stiffer skin and no base that slips: they are not simulated"
-            " yet"
-        )
-        return found
+        return remarks_on(self.records, self.left_out())
 
     def noise_sentence(self) -> str:
-        estimated = any(r.estimated for r in self.records)
-        return (
-            f"{len(self.records)} records, {self.points} values (of long records the means of neighbours);"
-            " the force and depth errors that the lab states, white from point to point"
-            + (" (where it states none, an error from the scatter of the record)" if estimated else "")
-            + "; first touch, off by the depth's error once a record; the simulation's mesh error: 1.1 %"
-            " common to all forces (twice that deeper than 1.5 radii), wandering by 0.5 % with the depth, by"
-            " more near the surface; the shear modulus free for each specimen."
-        )
+        return described_noise(self.records, self.points)
 
     def shown(self, k: int) -> Shown:
         """Force along the indenter of record `k`; rows across it, which follow, are not displayed."""
@@ -410,3 +378,9 @@ class IndentationModel(MeasurementModel):
             measured=r.force,
             of_rows=None if rows == r.points else np.eye(r.points, rows),
         )
+
+
+def _first_loading(record: Record) -> NDArray[np.bool_]:
+    """Mask of the points of the first loading; of all points if the record has none."""
+    first = (record.cycle == 1) & (record.direction > 0)
+    return first if first.any() else np.ones(record.points, dtype=bool)

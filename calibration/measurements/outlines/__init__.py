@@ -1,7 +1,7 @@
 """Traced outlines of beams compared with simulations; `.model.OutlineModel` is the measurement model."""
 
 from calibration.measurements.outlines._admitted import Admitted, admitted
-from calibration.measurements.outlines._edges import Feet, edges, feet
+from calibration.measurements.outlines._edges import Projection, edges, project
 from calibration.measurements.outlines._noise import (
     Nuisances,
     contour_root,
@@ -15,16 +15,16 @@ __all__ = [
     "COARSE",
     "REFERENCE",
     "Admitted",
-    "Feet",
     "Fidelity",
     "Nuisances",
+    "Projection",
     "TracedPhotograph",
     "admitted",
     "away_from_clamps",
     "beam_scene",
     "contour_root",
     "edges",
-    "feet",
+    "project",
     "registration_columns",
     "smooth_basis",
 ]

@@ -18,19 +18,19 @@ PIECES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Feet:
+class Projection:
     """Closest-point projection of k measured points onto an edge.
 
     Attributes
     ----------
     distance : signed distance [m], positive on the left of the edge, shape (k,).
     normal : unit normals of the edge, shape (k, 2).
-    foot : projected points [m], shape (k, 2).
+    nearest : projected points [m], shape (k, 2).
     """
 
     distance: Array
     normal: Array
-    foot: Array
+    nearest: Array
 
 
 def edges(result: Result) -> tuple[Array, Array]:
@@ -52,7 +52,7 @@ def _fine(nodes: Array) -> Array:
     return np.vstack([line.reshape(-1, 2), nodes[-1:]])
 
 
-def feet(points: Array, edge: Array) -> Feet:
+def project(points: Array, edge: Array) -> Projection:
     """Project measured points (k, 2) onto an edge (m, 2), which is extended straight beyond its ends."""
     pieces = np.diff(edge, axis=0)
     length = np.linalg.norm(pieces, axis=1)
@@ -68,4 +68,4 @@ def feet(points: Array, edge: Array) -> Feet:
     reached = np.clip(t[np.arange(len(points)), nearest], low[nearest], high[nearest])
     at = start[nearest] + reached[:, None] * along[nearest]
     normal = across[nearest]
-    return Feet(np.einsum("ik,ik->i", points - at, normal), normal, at)
+    return Projection(np.einsum("ik,ik->i", points - at, normal), normal, at)

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag, cholesky
 
 from calibration._numerics import arc_length, gaussian_correlation
 from calibration.experiment.model import Registration, TracedOutline
-from calibration.measurements.outlines._edges import Feet
+from calibration.measurements.outlines._edges import Projection
 
 Array = NDArray[np.float64]
 
@@ -49,9 +49,9 @@ def smooth_basis(outline: TracedOutline) -> Array:
     return np.asarray(block_diag(*blocks))
 
 
-def registration_columns(feet: Feet, registration: Registration) -> Array:
+def registration_columns(projection: Projection, registration: Registration) -> Array:
     """Change of the distances by one sd of shift x, shift z, roll and scale [m], shape (k, 4)."""
-    n, q = feet.normal, feet.foot
+    n, q = projection.normal, projection.nearest
     return np.column_stack(
         [
             registration.shift * n[:, 0],

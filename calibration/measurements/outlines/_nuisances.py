@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from calibration.measurements._state import State
 from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._noise import registration_columns
-from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients, feet_of
+from calibration.measurements.outlines._photographs import TracedPhotograph, coefficients, projections_of
 from calibration.measurements.outlines._scenes import Scenes
 from calibration.measurements.outlines._solutions import SolutionCache, at_time, simulated
 from tisim import Beam, Result, simulate
@@ -35,7 +35,7 @@ def registrations(
     names = ("shift x", "shift z", "roll", "scale")
     columns, shared = [], np.zeros((len(names), photographs[-1].rows.stop))
     for p, r in zip(photographs, results, strict=True):
-        both = feet_of(p, r, scenes.images(p.beam, state, time=p.time))
+        both = projections_of(p, r, scenes.images(p.beam, state, time=p.time))
         block = np.vstack([registration_columns(f, p.outline.registration) for f in both])
         for what, column in zip(names, (p.basis.T @ block).T, strict=True):
             whole = np.zeros(photographs[-1].rows.stop)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, TracedOutline
 from calibration.measurements._records import OfBeam
-from calibration.measurements.outlines._edges import Feet, edges, feet
+from calibration.measurements.outlines._edges import Projection, edges, project
 from calibration.measurements.outlines._noise import contour_root, smooth_basis
 from tisim import Result
 
@@ -70,7 +70,7 @@ class SeenPhotograph:
     Attributes
     ----------
     photograph : the traced photograph.
-    feet : projections of its points onto the upper and the lower edge, in the image.
+    projections : projections of its points onto the upper and the lower edge, in the image.
     simulated : upper and lower edge of the beam in the image [m], shape (m, 2) each.
     raw : distances of all points, corrected for the mesh error [m], shape (k,).
     left : `raw` without the most likely nuisances [m], shape (k,).
@@ -79,7 +79,7 @@ class SeenPhotograph:
     """
 
     photograph: TracedPhotograph
-    feet: Sequence[Feet]
+    projections: Sequence[Projection]
     simulated: Sequence[Array]
     raw: Array
     left: Array
@@ -168,17 +168,19 @@ def shown(line: Array, images: Sequence[Image]) -> Array:
     return line
 
 
-def feet_of(photograph: TracedPhotograph, result: Result, images: Sequence[Image] = ()) -> list[Feet]:
+def projections_of(
+    photograph: TracedPhotograph, result: Result, images: Sequence[Image] = ()
+) -> list[Projection]:
     """Projections of a photograph's points onto the upper and the lower edge of a beam, in the image."""
     upper, lower = (shown(line, images) for line in edges(result))
-    return [feet(photograph.outline.upper, upper), feet(photograph.outline.lower, lower)]
+    return [project(photograph.outline.upper, upper), project(photograph.outline.lower, lower)]
 
 
-def distances(both: Sequence[Feet]) -> Array:
+def distances(both: Sequence[Projection]) -> Array:
     """Signed distances [m] of the upper, then the lower points, shape (k,)."""
     return np.concatenate([f.distance for f in both])
 
 
 def coefficients(photograph: TracedPhotograph, result: Result, images: Sequence[Image] = ()) -> Array:
     """Coefficients of a photograph's distances from a simulated beam in its basis [m], shape (m,)."""
-    return np.asarray(photograph.basis.T @ distances(feet_of(photograph, result, images)))
+    return np.asarray(photograph.basis.T @ distances(projections_of(photograph, result, images)))

@@ -32,7 +32,8 @@ Array = NDArray[np.float64]
 # 20 mm beam. A search that stops when costs agree to 0.5 has the sum over all photographs to 5e-5.
 SCALE = 1e-2
 
-# Two rings: with the search's single ring the section has only 6 parabolas around, a visibly different shape.
+# Two radial elements: with the search's single one the section has only 6 parabolas around, a visibly
+# different shape.
 DICE_FIDELITY = Fidelity()
 # Flat triangles along each side of a curved facet: 12 sides of 4 lose 0.29 % of the area, nearly independent
 # of the material: they lower a Dice by up to 0.0014 and do not move its optimum.
@@ -86,7 +87,7 @@ class DiceObjective:
         if belief.density is None:
             raise InputError(
                 f"experiment.yaml: materials.{belief.name}.density_kg_m3: expected, since a beam's shape"
-                " tells only the ratio of weight to stiffness"
+                " determines only the ratio of weight to stiffness"
             )
         self.trials = [t for t in trials if t.traced]
         if not self.trials:

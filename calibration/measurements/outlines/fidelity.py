@@ -15,14 +15,14 @@ class Fidelity:
     Attributes
     ----------
     element : element type of `tisim.Beam`.
-    layer : axial element size [m].
-    rings : number of radial elements.
+    axial_element_size : length of the elements along the beam [m].
+    radial_elements : number of elements from the axis to the surface.
     solver : solver settings.
     """
 
     element: str = "default"
-    layer: float = 0.007
-    rings: int = 2
+    axial_element_size: float = 0.007
+    radial_elements: int = 2
     solver: Solver = field(default_factory=lambda: Solver(tolerance=1e-6))
 
 
@@ -32,8 +32,8 @@ class Fidelity:
 # strongly bent edge) is small and hardly depends on the material, but the likelihood of nine photographs is
 # sensitive to it: it is corrected by the beams of `simulators.CORRECTING`. The error of REFERENCE is at most
 # a fifth of it (15 micrometres on the 100 mm beam).
-COARSE = Fidelity(rings=1, solver=Solver(max_iterations=12))
-REFERENCE = Fidelity(layer=0.00175, rings=3, solver=Solver(max_iterations=12))
+COARSE = Fidelity(radial_elements=1, solver=Solver(max_iterations=12))
+REFERENCE = Fidelity(axial_element_size=0.00175, radial_elements=3, solver=Solver(max_iterations=12))
 
 
 def beam_scene(trial: BeamTrial, material: Material, *, density: float, fidelity: Fidelity) -> Beam:
@@ -42,7 +42,7 @@ def beam_scene(trial: BeamTrial, material: Material, *, density: float, fidelity
         trial,
         replace(material, density=density),
         element=fidelity.element,
-        axial_element_size=fidelity.layer,
-        radial_elements=fidelity.rings,
+        axial_element_size=fidelity.axial_element_size,
+        radial_elements=fidelity.radial_elements,
         solver=fidelity.solver,
     )

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from calibration.errors import InputError
-from calibration.experiment.model import BeamTrial, Capture, Experiment, TracedOutline
+from calibration.experiment.model import BeamTrial, Experiment
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._effect import Candidate
+from calibration.measurements._folds import joined
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise import Noise
 from calibration.measurements._noisy_model import Shown
@@ -30,28 +31,27 @@ from calibration.measurements.outlines._effect import OutlineEffect
 from calibration.measurements.outlines._noise import sentence
 from calibration.measurements.outlines._nuisances import beliefs, corners, doubts, registrations
 from calibration.measurements.outlines._photographs import (
-    Image,
     SeenPhotograph,
     TracedPhotograph,
     coefficients,
     distances,
-    feet_of,
     photographs_of,
+    projections_of,
     shown,
 )
+from calibration.measurements.outlines._predicted import photographed
 from calibration.measurements.outlines._scenes import BULK_RATIO, Scenes
 from calibration.measurements.outlines._solutions import SolutionCache
 from calibration.measurements.outlines.experiments import EXPERIMENTS, Photographs
 from calibration.measurements.outlines.fidelity import Fidelity
 from calibration.measurements.outlines.setup import Setup
 from calibration.measurements.outlines.simulators import OURS, Simulator
-from tisim import Beam, Result, simulate
+from tisim import Beam, Result
 
 Array = NDArray[np.float64]
 
 MESH_LEFT = 0.2  # of the mesh's correction: one sd of a nuisance, of each trial
 SCAN = np.geomspace(3e5, 3e3, 9)  # shear moduli to begin from, stiff to soft [Pa]
-EACH_EDGE = 40  # points of a made outline
 
 
 class OutlineModel(MeasurementModel):
@@ -111,8 +111,8 @@ class OutlineModel(MeasurementModel):
         for name in dict.fromkeys(t.material for t in self.trials):
             if experiment.materials[name].density is None:
                 raise InputError(
-                    f"experiment.yaml: materials.{name}.density_kg_m3: expected, since a beam's shape tells"
-                    " only the ratio of weight to stiffness"
+                    f"experiment.yaml: materials.{name}.density_kg_m3: expected, since a beam's shape"
+                    " determines only the ratio of weight to stiffness"
                 )
         self.experiment = experiment
         self.simulator, self.workers = simulator, workers
@@ -162,7 +162,9 @@ class OutlineModel(MeasurementModel):
             seen = [p for p in self.records if p.specimen in left]
             results = replace(self.solutions.surrogate, photographs=seen).solve([state])[0]
             for p, r in zip(seen, results, strict=True):
-                cost[p.specimen] += np.inf if r is None else float(np.sum(distances(feet_of(p, r)) ** 2))
+                cost[p.specimen] += (
+                    np.inf if r is None else float(np.sum(distances(projections_of(p, r)) ** 2))
+                )
             left = {n for n in left if cost[n] < best[n]}
             for n in left:
                 best[n], found[n] = cost[n], float(shear)
@@ -200,8 +202,8 @@ class OutlineModel(MeasurementModel):
     def _corrected(self, state: State, base: Array, coarser: Fidelity, finer: Fidelity) -> tuple[Array, str]:
         """Correction of the search's mesh error [m], shape (rows,), and "" or the reason why it is zero.
 
-        It is a Richardson extrapolation of second order in the number of rings; zero if a reference has no
-        equilibrium.
+        It is a Richardson extrapolation of second order in the number of radial elements; zero if a reference
+        has no equilibrium.
         """
         if self.baseline.whole and self.uncorrected:
             return np.zeros(len(base)), self.uncorrected  # a law that has none here is not tried again
@@ -212,7 +214,7 @@ class OutlineModel(MeasurementModel):
             if problem:
                 return np.zeros(len(base)), problem
             values.append(self.solutions.values_of(fine, state))
-        n, more = coarser.rings**2, finer.rings**2
+        n, more = coarser.radial_elements**2, finer.radial_elements**2
         return values[1] + n / (more - n) * (values[1] - values[0]) - base, ""
 
     def _misfit(self, states: Sequence[State]) -> Array:
@@ -282,11 +284,14 @@ class OutlineModel(MeasurementModel):
 
     def predicted_in(self, design: Photographs, state: State) -> Self | None:
         """Model of the same specimens in new photographs, as a state predicts them; None if not possible."""
-        kept = {t.id: changed for t in self.trials if (changed := design.trial(t)) is not None}
-        if not kept:
-            return None
-        empty = replace(self.experiment, trials=tuple(replace(t, captures=()) for t in kept.values()))
-        made = self._photographed(empty, kept, design, state)
+        made = photographed(
+            design,
+            state,
+            self.scenes,
+            self.records,
+            fidelity=self.simulator.fidelity,
+            workers=self.workers,
+        )
         if made is None:
             return None
         new = self.measuring(made, design.pose)
@@ -304,25 +309,6 @@ class OutlineModel(MeasurementModel):
             baseline=self.baseline,
             setup=self.scenes.setup,
         )
-
-    def _photographed(
-        self, empty: Experiment, trials: dict[str, BeamTrial], design: Photographs, state: State
-    ) -> Experiment | None:
-        """Experiment with the outlines that a state predicts; None if a beam has no equilibrium."""
-        scenes = replace(self.scenes, trials=[trials.get(t.id, t) for t in self.trials], pose=design.pose)
-        index = [i for i, t in enumerate(self.trials) if t.id in trials]
-        fidelity = self.simulator.fidelity
-        beams = [scenes.beam(i, state, time=design.time, fidelity=fidelity) for i in index]
-        results = simulate(beams, workers=self.workers)
-        if not all(r.ok for r in results):
-            return None
-        photographed = []
-        for i, r in zip(index, results, strict=True):
-            trial = trials[self.trials[i].id]
-            old = next(p for p in self.records if p.beam == i)
-            outline = _traced(r, old, scenes.images(i, state, time=design.time))
-            photographed.append(replace(trial, captures=(Capture(time=design.time, outline=outline),)))
-        return replace(empty, trials=tuple(photographed))
 
     def registered(self, state: State) -> list[Array]:
         """Distances of each photograph's points without the most likely nuisances [m].
@@ -349,12 +335,12 @@ class OutlineModel(MeasurementModel):
         for p, r in zip(used.photographs, results, strict=True):
             images = self.scenes.images(p.beam, state, time=p.time)
             lines = [shown(line, images) for line in edges(r)]
-            feet = feet_of(p, r, images)
-            raw = distances(feet) + p.basis @ self._correction[p.rows]
+            projections = projections_of(p, r, images)
+            raw = distances(projections) + p.basis @ self._correction[p.rows]
             found.append(
                 SeenPhotograph(
                     photograph=p,
-                    feet=feet,
+                    projections=projections,
                     simulated=lines,
                     raw=raw,
                     left=raw - p.basis @ known[p.rows],
@@ -381,16 +367,18 @@ class OutlineModel(MeasurementModel):
 
     def _fold_labels(self) -> Mapping[str, Sequence[str]]:
         """Fold labels by length and support, by material, and by the number of the photograph."""
-        found: dict[str, list[str]] = {}
+        found = []
         for k, p in enumerate(self.records):
             nth = sum(q.beam == p.beam for q in self.records[:k])
-            for name, label in {
-                "leave-one-length-out": f"{p.trial.supports} {1e3 * p.trial.free_length:.0f} mm",
-                "leave-one-material-out": p.material,
-                "leave-one-photograph-out": f"photograph {nth + 1} of each beam",
-            }.items():
-                found.setdefault(name, []).extend([label] * p.basis.shape[1])
-        return found
+            rows = p.basis.shape[1]
+            found.append(
+                {
+                    "leave-one-length-out": [f"{p.trial.supports} {1e3 * p.trial.free_length:.0f} mm"] * rows,
+                    "leave-one-material-out": [p.material] * rows,
+                    "leave-one-photograph-out": [f"photograph {nth + 1} of each beam"] * rows,
+                }
+            )
+        return joined(found)
 
     def _discrepancies(self) -> Mapping[str, Array]:
         return discrepancies(self.records, self.trials)
@@ -411,9 +399,3 @@ class OutlineModel(MeasurementModel):
             measured=np.zeros(len(p.basis)),
             of_rows=p.basis,
         )
-
-
-def _traced(result: Result, old: TracedPhotograph, images: Sequence[Image]) -> TracedOutline:
-    upper, lower = (shown(line, images) for line in edges(result))
-    some = [line[np.linspace(0, len(line) - 1, EACH_EDGE).astype(int)] for line in (upper, lower)]
-    return replace(old.outline, upper=some[0], lower=some[1])

@@ -12,13 +12,13 @@ from calibration.measurements.outlines.fidelity import COARSE, REFERENCE, Fideli
 from tisim import Beam, Result, Solver, Status, paper_stop, simulate
 
 # Beams for the correction of the search's mesh error, which for a bench of nine beams is 12 in chi. Their
-# remaining error depends on the number of rings (2, 3 and 4 give 10.3, 12.0 and 12.5; thinner layers change
-# almost nothing) and decreases with its square: it is extrapolated from two numbers. Next to a clamp beams
-# remain too stiff, by 0.09 mm of grip on average over four clean cases of another solver (0.12 without the
-# extrapolation).
+# remaining error depends on the number of radial elements (2, 3 and 4 give 10.3, 12.0 and 12.5; shorter ones
+# change almost nothing) and decreases with its square: it is extrapolated from two numbers. Next to a clamp
+# beams remain too stiff, by 0.09 mm of grip on average over four clean cases of another solver (0.12 without
+# the extrapolation).
 CORRECTING = (
-    Fidelity(layer=0.005, rings=2, solver=REFERENCE.solver),
-    Fidelity(layer=0.005, rings=3, solver=REFERENCE.solver),
+    Fidelity(axial_element_size=0.005, radial_elements=2, solver=REFERENCE.solver),
+    Fidelity(axial_element_size=0.005, radial_elements=3, solver=REFERENCE.solver),
 )
 
 
@@ -35,8 +35,8 @@ class Simulator:
     name : name on the command line and in reports.
     sentence : description for reports.
     fidelity : discretisation of the beams of a search.
-    reference : discretisations for the correction of the mesh error, with fewer and with more rings; None for
-        no correction.
+    reference : discretisations for the correction of the mesh error, with fewer and with more radial
+        elements; None for no correction.
     run : function with the signature of `tisim.simulate`.
     surrogate : discretisation of static beams whose derivatives guide a search, if its own beams are
         expensive and not smooth; None for its own.
@@ -136,19 +136,21 @@ SIMULATORS = {
         Simulator(
             name="linear-tetrahedra",
             sentence="plain 4-node tetrahedra in equilibrium, as the paper's elements",
-            fidelity=Fidelity(element="tet4", layer=0.0035, rings=3, solver=COARSE.solver),
+            fidelity=Fidelity(
+                element="tet4", axial_element_size=0.0035, radial_elements=3, solver=COARSE.solver
+            ),
         ),
         Simulator(
             name="early-stop",
             sentence="released beams, stopped by the paper's rule",
-            fidelity=Fidelity(rings=1, solver=_DYNAMIC),
+            fidelity=Fidelity(radial_elements=1, solver=_DYNAMIC),
             run=_stopped,
-            surrogate=Fidelity(rings=1, solver=COARSE.solver),
+            surrogate=Fidelity(radial_elements=1, solver=COARSE.solver),
         ),
         Simulator(
             name="coarse-mesh",
             sentence="mixed quadratic tetrahedra on a mesh twice too coarse",
-            fidelity=Fidelity(layer=0.02, rings=1, solver=COARSE.solver),
+            fidelity=Fidelity(axial_element_size=0.02, radial_elements=1, solver=COARSE.solver),
         ),
     )
 }

@@ -71,10 +71,10 @@ def _measured(s: SeenPhotograph, frame: int) -> Surface:
     start = 0
     points: list[Array] = []
     triangles: list[NDArray[np.int32]] = []
-    for feet in s.feet:
-        left = s.left[start : start + len(feet.foot)]
-        start += len(feet.foot)
-        line = feet.foot + left[:, None] * feet.normal
+    for projection in s.projections:
+        left = s.left[start : start + len(projection.nearest)]
+        start += len(projection.nearest)
+        line = projection.nearest + left[:, None] * projection.normal
         some = np.unique(np.round(np.linspace(0, len(line) - 1, min(len(line), POINTS))).astype(int))
         vertices, faces = _tube(line[some], radius)
         triangles.append(faces + sum(map(len, points)))

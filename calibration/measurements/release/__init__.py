@@ -1,7 +1,7 @@
 """Cantilever releases: markers of a beam in free vibration and at static equilibrium."""
 
 from calibration.measurements.release._nuisances import HELD
-from calibration.measurements.release._record import hung_mass, not_swinging
+from calibration.measurements.release._record import hung_mass, why_no_record
 from calibration.measurements.release.kinematics import Motion, marker_displacements, marker_motion
 from calibration.measurements.release.objective import Damping, Fidelity, MarkerObjective, Match, Nuisances
 from calibration.measurements.release.ringdown import RingDown, ringdown
@@ -18,6 +18,6 @@ __all__ = [
     "hung_mass",
     "marker_displacements",
     "marker_motion",
-    "not_swinging",
     "ringdown",
+    "why_no_record",
 ]

@@ -264,7 +264,7 @@ def records_of(experiment: Experiment) -> list[Record]:
     return [_record(t, experiment) for t in trials]
 
 
-def not_swinging(trial: BeamTrial, experiment: Experiment) -> str:
+def why_no_record(trial: BeamTrial, experiment: Experiment) -> str:
     """Reason (the message of `records_of`) why a trial with markers has no record; "" if it has one."""
     try:
         _record(trial, experiment)

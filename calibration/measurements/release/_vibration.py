@@ -58,8 +58,8 @@ class FreeVibration:
         t = np.maximum(np.asarray(time, dtype=float), 0.0)
         parts = self.amplitudes * np.exp(np.multiply.outer(t, self.rates))
         if self.rubbed:
-            swings = np.abs(self.rates[0].imag) > 0.0
-            parts[:, 0, swings] *= self._left_by_friction(t)[:, None]
+            oscillates = np.abs(self.rates[0].imag) > 0.0
+            parts[:, 0, oscillates] *= self._left_by_friction(t)[:, None]
         y = parts.sum(axis=2).real
         return self.equilibrium + (y + self.offset) @ self.modes.T
 

@@ -10,7 +10,7 @@ from calibration.inference import Objective
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._contribution import Contribution, FitContext
 from calibration.measurements.objective import ModelObjective
-from calibration.measurements.release._record import not_swinging
+from calibration.measurements.release._record import why_no_record
 from calibration.measurements.release.model import ReleaseModel
 from calibration.measurements.release.settled import SettledModel
 
@@ -33,8 +33,8 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
         raise InputError(
             f"trial {trials[0].id}: markers: a known rig corrects outlines, not markers: fit them apart"
         )
-    why = {t.id: not_swinging(t, own) for t in trials}
-    swinging, still = [t for t in trials if not why[t.id]], [t for t in trials if why[t.id]]
+    why = {t.id: why_no_record(t, own) for t in trials}
+    vibrating, still = [t for t in trials if not why[t.id]], [t for t in trials if why[t.id]]
     left_out = [
         f"{t.id}: the motion of its markers, only where they come to rest ({why[t.id]})" for t in still
     ]
@@ -45,14 +45,14 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
     ]
     left_out += [note for t in trials if (note := _taken_as_exact(t, own.materials[t.material]))]
     objectives: list[Objective] = []
-    if swinging:
+    if vibrating:
         model = ReleaseModel(
-            replace(own, trials=tuple(swinging)),
-            baseline=Baseline.of_law(swinging, context.law.in_steps(STEPS)),
+            replace(own, trials=tuple(vibrating)),
+            baseline=Baseline.of_law(vibrating, context.law.in_steps(STEPS)),
             workers=context.workers,
         )
         left_out += model.left_out()
-        objectives.append(ModelObjective(model, name=f"markers of {', '.join(t.id for t in swinging)}"))
+        objectives.append(ModelObjective(model, name=f"markers of {', '.join(t.id for t in vibrating)}"))
     if still:
         at_rest = SettledModel(
             replace(own, trials=tuple(still)),
@@ -61,7 +61,7 @@ def likelihood(own: Experiment, context: FitContext) -> Contribution:
         )
         objectives.append(ModelObjective(at_rest, name=f"markers of {', '.join(t.id for t in still)}"))
     return Contribution(
-        objectives=tuple(objectives), left_out=tuple(left_out), steps=STEPS if swinging else 1.0
+        objectives=tuple(objectives), left_out=tuple(left_out), steps=STEPS if vibrating else 1.0
     )
 
 

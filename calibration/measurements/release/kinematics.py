@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
 
 from tisim import Mesh, Result
 
@@ -137,3 +139,32 @@ def nearest_on_triangles(at: Array, triangles: Array) -> tuple[Array, Array]:
         edge[:, i], edge[:, j] = 1.0 - t, t
         best[closer], gap[closer] = edge[closer], away[closer]
     return np.einsum("ta,tai->ti", best, triangles), best
+
+
+@dataclass(eq=False)
+class Track:
+    """Motion of a marker, interpolated by cubic splines between the f frames of a simulation.
+
+    Attributes
+    ----------
+    time : time since the release [s], shape (f,).
+    displacement : [m], shape (f, 3).
+    turn : R - 1 with the rotation R at the marker, shape (f, 3, 3).
+    """
+
+    time: Array
+    displacement: Array
+    turn: Array
+    _spline: CubicSpline = field(init=False)
+
+    def __post_init__(self) -> None:
+        values = np.concatenate([self.displacement, self.turn.reshape(-1, 9)], axis=1)
+        values = np.concatenate([np.zeros((1, 12)), values])
+        start: tuple[Literal[1], Array] = (1, np.zeros(12))  # released at rest: no velocity
+        self._spline = CubicSpline(np.concatenate([[0.0], self.time]), values, bc_type=(start, "not-a-knot"))
+
+    def at(self, time: Array) -> tuple[Array, Array, Array]:
+        """Displacement (t, 3), R - 1 (t, 3, 3), and 1 after, 0 before the release (t,), at times since it."""
+        after = (time > 0.0).astype(float)
+        values = self._spline(np.clip(time, 0.0, self.time[-1])) * after[:, None]
+        return values[:, :3], values[:, 3:].reshape(-1, 3, 3), after

@@ -315,8 +315,8 @@ class ReleaseModel(MeasurementModel):
         """Sentences on data left out, on assumptions, and on the use of the verdict."""
         records = self.records
         found = [
-            f"of each trial the first {FIRST:g} periods after the release are left out, since no hand lets go"
-            " in an instant; the time of the release and the shape at it are free",
+            f"of each trial the first {FIRST:g} periods after the release are left out, since a release by"
+            " hand is not instantaneous; the time of the release and the shape at it are free",
             "displacements across the plane of the vibration are not compared; a twist of the tip is a"
             " nuisance",
         ]

@@ -7,12 +7,11 @@ The beam is released from its straight rest shape; its motion and its static equ
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from calibration.errors import InputError
@@ -23,7 +22,7 @@ from calibration.measurements.release._record import (
     stated_density,
     stated_noise,
 )
-from calibration.measurements.release.kinematics import Motion, marker_motion
+from calibration.measurements.release.kinematics import Motion, Track, marker_motion
 from calibration.parameters import Coordinate
 from tisim import Beam, Material, Result, Solver, simulate
 
@@ -54,16 +53,16 @@ class Fidelity:
 
     Attributes
     ----------
-    layer : axial element size [m].
-    rings : number of radial elements.
+    axial_element_size : length of the elements along the beam [m].
+    radial_elements : number of elements from the axis to the surface.
     time_step : [s].
     tolerance : tolerance of the static equilibrium.
     motion_tolerance : tolerance of each time step (between 1e-4 and 1e-6 the measured beam's end differs by
         7e-9 m).
     """
 
-    layer: float = 0.020
-    rings: int = 1
+    axial_element_size: float = 0.020
+    radial_elements: int = 1
     time_step: float = 2e-3
     tolerance: float = 1e-6
     motion_tolerance: float = 1e-4
@@ -282,8 +281,8 @@ class MarkerObjective:
             self.trial,
             replace(material, density=self.density),
             tip_mass=self.tip_mass,
-            axial_element_size=self.fidelity.layer,
-            radial_elements=self.fidelity.rings,
+            axial_element_size=self.fidelity.axial_element_size,
+            radial_elements=self.fidelity.radial_elements,
             solver=Solver(tolerance=self.fidelity.tolerance),
         )
 
@@ -363,35 +362,6 @@ class MarkerObjective:
             raise InputError(f"trials.{self.trial.id}.markers: expected a release, but no marker moves")
         interval = float(np.diff(self.markers[0].time).min())
         return min(signs) - EARLY * interval, min(signs) + LATE * interval
-
-
-@dataclass(eq=False)
-class Track:
-    """Motion of a marker, interpolated by cubic splines between the f frames of a simulation.
-
-    Attributes
-    ----------
-    time : time since the release [s], shape (f,).
-    displacement : [m], shape (f, 3).
-    turn : R - 1 with the rotation R at the marker, shape (f, 3, 3).
-    """
-
-    time: Array
-    displacement: Array
-    turn: Array
-    _spline: CubicSpline = field(init=False)
-
-    def __post_init__(self) -> None:
-        values = np.concatenate([self.displacement, self.turn.reshape(-1, 9)], axis=1)
-        values = np.concatenate([np.zeros((1, 12)), values])
-        start: tuple[Literal[1], Array] = (1, np.zeros(12))  # released at rest: no velocity
-        self._spline = CubicSpline(np.concatenate([[0.0], self.time]), values, bc_type=(start, "not-a-knot"))
-
-    def at(self, time: Array) -> tuple[Array, Array, Array]:
-        """Displacement (t, 3), R - 1 (t, 3, 3), and 1 after, 0 before the release (t,), at times since it."""
-        after = (time > 0.0).astype(float)
-        values = self._spline(np.clip(time, 0.0, self.time[-1])) * after[:, None]
-        return values[:, :3], values[:, 3:].reshape(-1, 3, 3), after
 
 
 def profiled(residual: Array, columns: Array) -> Array:

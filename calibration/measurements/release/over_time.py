@@ -9,7 +9,7 @@ import numpy as np
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment
 from calibration.measurements._over_time import OverTime
-from calibration.measurements.release._record import not_swinging, records_of
+from calibration.measurements.release._record import records_of, why_no_record
 from calibration.parameters import ProtocolWindow, part_kind
 
 # Relaxation times shorter than this fraction of 1 / (angular frequency) act as viscous damping and cannot be
@@ -28,9 +28,9 @@ def window(experiment: Experiment) -> ProtocolWindow:
 
 
 def check(experiment: Experiment, specs: Sequence[str]) -> None:
-    """InputError for a trial with markers that has no record (`not_swinging`), if there are specs."""
+    """InputError for a trial with markers that has no record (`why_no_record`), if there are specs."""
     for t in experiment.trials:
-        why = not_swinging(t, experiment) if isinstance(t, BeamTrial) and specs else ""
+        why = why_no_record(t, experiment) if isinstance(t, BeamTrial) and specs else ""
         if why:
             part = part_kind(specs[0])
             raise InputError(f"{why}, for --{part.option} {specs[0]}")

@@ -88,7 +88,8 @@ def ringdown(time: ArrayLike, signal: ArrayLike, *, first: float = 0.15, last: f
     at_an_end = min(w / (0.5 * low), high / w) < 1.01
     if at_an_end or (without - rest) * (len(t) - 6) <= SURE * 4.0 * rest:
         raise ValueError(
-            f"ring-down: expected a signal that swings at {low / np.pi / 2:.2g} to {high / np.pi / 2:.3g} Hz"
+            f"ring-down: expected a signal that oscillates at {low / np.pi / 2:.2g} to"
+            f" {high / np.pi / 2:.3g} Hz"
         )
     return RingDown(
         frequency=w / (2.0 * np.pi),

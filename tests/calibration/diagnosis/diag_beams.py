@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 from numpy.typing import NDArray
+from photograph_errors import photographed
 
 import tisim
 from calibration.diagnosis.catalogue import effects_of
@@ -62,8 +63,8 @@ def tiny(
                 length=length / 1e3,
                 supports=supports,  # type: ignore[arg-type]
                 element=COARSE.element,  # type: ignore[arg-type]
-                axial_element_size=COARSE.layer,
-                radial_elements=COARSE.rings,
+                axial_element_size=COARSE.axial_element_size,
+                radial_elements=COARSE.radial_elements,
                 solver=COARSE.solver,
             )
             captures = []
@@ -71,7 +72,7 @@ def tiny(
                 (result,) = tisim.simulate([change(beam, time)], workers=1)
                 assert result.ok
                 file = f"beams/{identifier}-{time:.0f}.csv"
-                tables[file] = outline_columns(*_photograph(_edges(result), rng, noise))
+                tables[file] = outline_columns(*photographed(_edges(result), rng, noise, _contour_error))
                 captures.append(capture_entry(time, file))
             entry = beam_entry(
                 identifier,
@@ -104,22 +105,9 @@ def _edges(result: tisim.Result) -> list[Array]:
     return found
 
 
-def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) -> tuple[Array, Array]:
-    """Add contour errors of 0.1 mm with correlation length 5 mm, and one draw of shift, roll and scale."""
-    shift = 0.1 * noise * rng.standard_normal(2)
-    roll = np.radians(0.15) * noise * rng.standard_normal()
-    scale = 1.0 + 0.003 * noise * rng.standard_normal()
-    turn = np.array([[np.cos(roll), -np.sin(roll)], [np.sin(roll), np.cos(roll)]])
-    found = []
-    for edge in edges:
-        step = np.gradient(edge, axis=0)
-        along = step / np.linalg.norm(step, axis=1)[:, None]
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
-        C = np.exp(-((s[:, None] - s[None]) ** 2) / (2.0 * 5.0**2)) + 4e-4 * np.eye(len(s))
-        error = 0.1 * noise * np.linalg.cholesky(C) @ rng.standard_normal(len(s))
-        traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
-        found.append(scale * traced @ turn.T + shift)
-    return found[0], found[1]
+def _contour_error(correlations: Array, sd: float, rng: np.random.Generator) -> Array:
+    C = correlations + 4e-4 * np.eye(len(correlations))
+    return np.asarray(sd * np.linalg.cholesky(C) @ rng.standard_normal(len(C)))
 
 
 def beam_model(

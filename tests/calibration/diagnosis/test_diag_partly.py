@@ -27,9 +27,9 @@ from calibration.diagnosis.laws import diagnose_with_law
 from calibration.diagnosis.report import write_report
 from calibration.errors import InputError
 from calibration.measurements._effect import Candidate
-from calibration.measurements._layers import Curve, deviations, layers_of
 from calibration.measurements._noise_known import NoiseKnown, PointNoise, roughness
 from calibration.measurements._state import State
+from calibration.measurements._variance_components import Curve, deviations, variance_components
 
 
 def hidden(name: str, size: float) -> np.ndarray:
@@ -324,13 +324,13 @@ def curves(*, trend: float, spread: float, seed: int, tests: int = 6) -> list[Cu
 
 
 def test_repeats_show_their_scatter_beside_the_trend_of_their_order() -> None:
-    found = [layers_of(curves(trend=0.05, spread=0.01, seed=k)) for k in range(20)]
+    found = [variance_components(curves(trend=0.05, spread=0.01, seed=k)) for k in range(20)]
     assert np.mean([f.repeat for f in found if f.repeat is not None]) == pytest.approx(0.01, rel=0.3)
     assert np.mean([f.order for f in found if f.order is not None]) == pytest.approx(0.05, rel=0.15)
     assert found[0].repeats == tuple(f"t{n}" for n in range(6))
     assert "6 repeats differ by" in found[0].sentences()[0]
-    assert layers_of(curves(trend=0.0, spread=0.01, seed=1, tests=3)).repeat is None
-    assert layers_of([]).sentences() == []
+    assert variance_components(curves(trend=0.0, spread=0.01, seed=1, tests=3)).repeat is None
+    assert variance_components([]).sentences() == []
 
 
 def test_a_loop_of_loading_and_unloading_is_no_scatter_between_repeats() -> None:
@@ -342,7 +342,7 @@ def test_a_loop_of_loading_and_unloading_is_no_scatter_between_repeats() -> None
         branch = np.repeat([0, 1], 40)
         misfit = np.where(branch == 0, 0.1, -0.1) + 0.001 * (n % 2)
         found.append(repeat(n, x, branch, misfit))
-    scatter = layers_of(found).repeat
+    scatter = variance_components(found).repeat
     assert scatter is not None
     assert 0.0 < scatter < 0.002
 
@@ -354,9 +354,9 @@ def test_noise_from_point_to_point_is_not_scatter_between_repeats() -> None:
     for seed in range(20):
         random = np.random.default_rng(seed)
         noisy = [0.02 * random.standard_normal(60) for _ in range(6)]
-        alike.append(layers_of([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(noisy)]))
+        alike.append(variance_components([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(noisy)]))
         moved = [z + 0.03 * random.standard_normal() for z in noisy]
-        apart.append(layers_of([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(moved)]))
+        apart.append(variance_components([repeat(n, x, branch, z, sd=0.02) for n, z in enumerate(moved)]))
     assert sum(f.repeat == 0.0 for f in alike) >= 18
     assert sum(f.order is None for f in alike) >= 18
     assert "6 repeats differ by no more than the noise" in alike[0].sentences()[0]
@@ -381,10 +381,10 @@ def test_a_scatter_of_the_load_cell_is_found_in_full(size: float, records: int) 
             size * random.standard_normal() * curve + 0.002 * random.standard_normal(40)
             for _ in range(records)
         ]
-        layers = layers_of([repeat(n, x, branch, m, sd=0.002) for n, m in enumerate(misfits)])
-        assert layers.repeat is not None
-        found.append(layers.repeat**2)
-        bends.append(layers.bends)
+        components = variance_components([repeat(n, x, branch, m, sd=0.002) for n, m in enumerate(misfits)])
+        assert components.repeat is not None
+        found.append(components.repeat**2)
+        bends.append(components.by_degree)
     assert np.sqrt(np.mean(found)) == pytest.approx(size * np.sqrt(np.mean(curve**2)), rel=0.15)
     # of degrees 0 to 2 alone, as the gain's
     assert np.sqrt(np.mean(np.array(bends)[:, 3:] ** 2)) < 0.1 * size

@@ -14,7 +14,7 @@ def test_the_tables_name_bonded_platens() -> None:
     assert [r.name for r in model.records] == ["soft-1"]
     title, sentences, head, baseline, best, *_ = table(found, model, "soft")
     assert title == f"\nsoft: found; {model.points} points"
-    assert sentences.startswith("Found: the platens hold")
+    assert sentences.startswith("Found: the platens restrain")
     assert [line.count("|") for line in (head.splitlines()[-1], baseline, best)] == [5, 5, 5]
     assert best.startswith("| platen-bonding 1")
     explanation = found.finding.explanations[0]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from html.parser import HTMLParser
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Literal
 
@@ -149,47 +147,6 @@ def diagnosis(kind: Kind, *, place: str = "S0") -> tuple[Diagnosis, LinearModel]
         folds=3,
     )
     return replace(made, held_out=gain), model
-
-
-class Page(HTMLParser):
-    """Text, values of <data>, image sources, tags and attributes of a page."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.words: list[str] = []
-        self.values: list[float] = []
-        self.shown: dict[float, str] = {}
-        self.sources: list[str] = []
-        self.tags: set[str] = set()
-        self.attributes: set[str] = set()
-        self.verdict = ""
-        self._inside: float | None = None
-        self.raw = path.read_text(encoding="utf-8")
-        self.feed(self.raw)
-
-    @property
-    def text(self) -> str:
-        return " ".join(" ".join(self.words).split())
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        found = dict(attrs)
-        self.tags.add(tag)
-        self.attributes |= set(found)
-        if tag == "data":
-            self._inside = float(found["value"] or "nan")
-            self.values.append(self._inside)
-        if tag == "p" and (found.get("class") or "").startswith("verdict "):
-            self.verdict = (found["class"] or "").split()[1]
-        self.sources += [v for k, v in attrs if k == "src" and v]
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag == "data":
-            self._inside = None
-
-    def handle_data(self, data: str) -> None:
-        self.words.append(data)
-        if self._inside is not None:
-            self.shown[self._inside] = data
 
 
 def numbers(told: Any) -> list[float]:

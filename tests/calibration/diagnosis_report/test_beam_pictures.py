@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bent_beams import bent_folder
-from diagnosis_cases import Page
+from html_page import Page
 
 from calibration.diagnosis import Diagnosis, Rules, diagnose
 from calibration.diagnosis.drawing import figures_of
@@ -105,9 +105,9 @@ def test_the_beams_can_be_turned_around(bent: tuple[Diagnosis, OutlineModel]) ->
     bodies, tubes = view.surfaces[0::2], view.surfaces[1::2]
     for frame, (s, body, tube) in enumerate(zip(seen, bodies, tubes, strict=True)):
         assert body.frame == tube.frame == frame
-        feet = np.concatenate([f.foot for f in s.feet])
-        normal = np.concatenate([f.normal for f in s.feet])
-        wanted = feet + s.left[:, None] * normal
+        nearest = np.concatenate([f.nearest for f in s.projections])
+        normal = np.concatenate([f.normal for f in s.projections])
+        wanted = nearest + s.left[:, None] * normal
         centres = tube.positions[0].reshape(-1, 6, 3).mean(axis=1)
         assert np.allclose(centres[:, 1], 0.0, atol=1e-12)
         if len(centres) == len(wanted):  # short edges keep all points

@@ -11,7 +11,8 @@ from pathlib import Path
 import matplotlib.figure
 import numpy as np
 import pytest
-from diagnosis_cases import Kind, LinearModel, Page, diagnosis, numbers
+from diagnosis_cases import Kind, LinearModel, diagnosis, numbers
+from html_page import Page
 from matplotlib.image import imread
 
 from calibration.diagnosis import Diagnosis

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from lab_columns import column
 
 from calibration.errors import InputError
 from calibration.lab_files import (
     Importer,
     LabFile,
-    LabTest,
     importers,
     name_and_unit,
     read_lab_file,
@@ -22,12 +22,6 @@ from calibration.lab_files import _formats as formats
 from calibration.lab_files._quantities import quantity
 
 SAMPLES = Path(__file__).resolve().parents[3] / "datasets" / "lab-files"
-
-
-def column(test: LabTest, header: str) -> np.ndarray:
-    (found,) = (c for c in test.columns if c.header == header)
-    assert found.unit is not None
-    return test.numbers(found) * found.unit.factor
 
 
 def write(folder: Path, name: str, text: str | bytes) -> Path:

@@ -11,22 +11,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from lab_columns import column
 from typer.testing import CliRunner
 
 from calibration.errors import InputError
-from calibration.lab_files import LabTest, _workbook, read_lab_file
+from calibration.lab_files import _workbook, read_lab_file
 from calibration.lab_files._text import open_lab_file
 from calibration.new import app
 
 openpyxl = pytest.importorskip("openpyxl")
 
 TABLE = [["Time (s)", "Load (N)"], *([0.1 * k, 2 * k] for k in range(4))]
-
-
-def column(test: LabTest, header: str) -> np.ndarray:
-    (found,) = (c for c in test.columns if c.header == header)
-    assert found.unit is not None
-    return test.numbers(found) * found.unit.factor
 
 
 def workbook(path: Path, sheets: dict[str, list[list[object]]]) -> Path:

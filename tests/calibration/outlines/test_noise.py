@@ -5,7 +5,7 @@ import pytest
 
 from calibration.experiment.model import Registration, TracedOutline
 from calibration.measurements._noise import Noise
-from calibration.measurements.outlines._edges import Feet, feet
+from calibration.measurements.outlines._edges import Projection, project
 from calibration.measurements.outlines._noise import (
     FLOOR,
     Nuisances,
@@ -56,7 +56,7 @@ def test_registration_columns_are_a_small_rigid_motion_and_a_stretch() -> None:
     edge = np.array([[0.0, 0.01], [0.05, 0.005], [0.1, -0.03]])
     points = np.array([[0.02, 0.0085], [0.07, -0.01], [0.09, -0.022]])
     r = Registration(shift=1e-6, roll=1e-6, scale=1e-6)
-    base = feet(points, edge)
+    base = project(points, edge)
     columns = registration_columns(base, r)
     c, s = np.cos(1e-6), np.sin(1e-6)
     moved = (
@@ -66,16 +66,18 @@ def test_registration_columns_are_a_small_rigid_motion_and_a_stretch() -> None:
         points * (1 + 1e-6),
     )
     for k, p in enumerate(moved):
-        # columns are taken at the foot; the point itself is off by its distance
-        assert np.allclose(feet(p, edge).distance - base.distance, columns[:, k], atol=2e-8 * 0.1, rtol=0.02)
+        # columns are taken at the projected point; the point itself is off by its distance
+        assert np.allclose(
+            project(p, edge).distance - base.distance, columns[:, k], atol=2e-8 * 0.1, rtol=0.02
+        )
 
 
-def test_feet_of_points_on_either_side_and_past_the_end() -> None:
+def test_projection_of_points_on_either_side_and_past_the_end() -> None:
     edge = np.array([[0.0, 0.0], [1.0, 0.0]])
-    found = feet(np.array([[0.5, 0.2], [0.5, -0.3], [1.5, 0.1]]), edge)
-    assert isinstance(found, Feet)
+    found = project(np.array([[0.5, 0.2], [0.5, -0.3], [1.5, 0.1]]), edge)
+    assert isinstance(found, Projection)
     assert np.allclose(found.distance, [0.2, -0.3, 0.1])
-    assert np.allclose(found.foot, [[0.5, 0.0], [0.5, 0.0], [1.5, 0.0]])
+    assert np.allclose(found.nearest, [[0.5, 0.0], [0.5, 0.0], [1.5, 0.0]])
 
 
 def test_profiled_nuisances_give_the_chi_square_of_the_whole_covariance() -> None:

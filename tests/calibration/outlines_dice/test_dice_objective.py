@@ -83,7 +83,7 @@ def test_dice_is_largest_at_the_modulus_that_the_elastica_was_made_with():
 
 
 def test_material_without_an_answer_has_none_and_leaves_the_others_theirs():
-    coarse = Fidelity(rings=1, layer=0.02)
+    coarse = Fidelity(radial_elements=1, axial_element_size=0.02)
     objective = DiceObjective([bent(500e3)], BELIEF, fidelity=coarse, workers=1)
     rows = objective.residuals([neo_hookean(500e3), neo_hookean(60.0)])
     assert np.isfinite(rows[0]).all()

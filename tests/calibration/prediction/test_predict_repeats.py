@@ -38,7 +38,7 @@ def test_fitted_and_predicted_repeats_have_one_noise(repeats: Experiment) -> Non
     """The model that predicts kept the noise that is assumed of a record alone."""
     alone = model_of(replace(repeats, trials=repeats.trials[:FITTED]), workers=1)
     known = alone.settle_noise("stated")
-    assert known.layers.repeats
+    assert known.components.repeats
     together = model_of(repeats, workers=1)
     fold = together.row_record >= FITTED
     train, test = (together.subset(fold, others=others) for others in (True, False))

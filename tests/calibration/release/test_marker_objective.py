@@ -14,7 +14,7 @@ from calibration.measurements.release import Damping, Fidelity, MarkerObjective,
 from calibration.parameters import parametrisation
 from studies.release.fit import fit_motion
 
-QUICK = Fidelity(layer=0.02, rings=1, time_step=3e-3)
+QUICK = Fidelity(axial_element_size=0.02, radial_elements=1, time_step=3e-3)
 LAW = parametrisation("neo-hookean")
 
 

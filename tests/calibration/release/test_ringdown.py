@@ -52,7 +52,7 @@ def test_a_signal_without_a_resolved_vibration_is_refused(fast):
     z = -6.0 - 0.4 * np.log10(np.maximum(t, 1e-3)) + np.random.default_rng(3).normal(0.0, 0.05, len(t))
     if fast:
         z = z + np.random.default_rng(4).normal(0.0, 3.0, len(t))
-    with pytest.raises(ValueError, match="expected a signal that swings at"):
+    with pytest.raises(ValueError, match="expected a signal that oscillates at"):
         ringdown(t, z, last=1.8)
 
 

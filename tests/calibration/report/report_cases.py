@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -14,41 +13,15 @@ from _folders import (
     outline_columns,
     write_experiment,
 )
-from scipy.integrate import solve_bvp
+from hanging_beams import elastica
 
 from calibration.inference import Estimate
 from calibration.study import Calibration
 
-RADIUS, LENGTH = 0.010, 0.050
-
-
-def elastica(shear_modulus: float) -> tuple[np.ndarray, np.ndarray]:
-    """Upper and lower edge [mm], (25, 2) each, of a round cantilever under its own weight.
-
-    Inextensible elastica E I theta'' = w (L - s) cos theta; theta is the downward slope, rho = 1000 kg/m3,
-    E = 3 G.
-    """
-    stiffness = 3.0 * shear_modulus * np.pi * RADIUS**4 / 4.0
-    weight = 1000.0 * 9.81 * np.pi * RADIUS**2
-    s = np.linspace(0.0, LENGTH, 201)
-
-    def slopes(at: np.ndarray, y: np.ndarray) -> np.ndarray:
-        pull = -weight * (LENGTH - at) * np.cos(y[0]) / stiffness
-        return np.vstack([y[1], pull, np.cos(y[0]), -np.sin(y[0])])
-
-    def ends(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return np.array([a[0], b[1], a[2], a[3]])
-
-    found = solve_bvp(slopes, ends, s, np.zeros((4, len(s))), tol=1e-8)
-    assert found.success
-    theta, _, x, z = found.sol(np.linspace(0.03, 1.0, 25) * LENGTH)
-    middle, across = np.column_stack([x, z]), np.column_stack([np.sin(theta), np.cos(theta)])
-    return 1e3 * (middle + RADIUS * across), 1e3 * (middle - RADIUS * across)
-
 
 def beam_folder(folder: Path) -> Path:
     """Experiment with one cantilever of 50 mm with one traced photograph, and one beam without an outline."""
-    upper, lower = elastica(10e3)
+    upper, lower = elastica(10e3, 0.050, at=np.linspace(0.03, 1.0, 25))
     photographs = [capture_entry(60.0, "beams/b.csv")]
     traced = beam_entry("hanging", material="S1", captures=photographs, free_length_mm=50.0)
     pixel = {"squares": [9, 6], "square_mm": 10.0}
@@ -128,48 +101,3 @@ def estimate(name: str = "shear_modulus", *, value: float = 1e5, seen: str = "id
         relative=True,
         seen=seen,  # type: ignore[arg-type]
     )
-
-
-class Page(HTMLParser):
-    """Parts of the page that the tests check: text, values of <data>, image sources, tags, table rows."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.words: list[str] = []
-        self.values: list[float] = []
-        self.sources: list[str] = []
-        self.links: list[str] = []
-        self.tags: set[str] = set()
-        self.rows: list[list[str]] = []
-        self.inside = False
-        self.raw = path.read_text(encoding="utf-8")
-        self.feed(self.raw)
-
-    @property
-    def text(self) -> str:
-        return " ".join(" ".join(self.words).split())
-
-    def row(self, first: str) -> list[str]:
-        """First table row whose first cell is `first`."""
-        return next(r for r in self.rows if r and r[0] == first)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        found = dict(attrs)
-        self.tags.add(tag)
-        if tag == "data":
-            self.values.append(float(found["value"] or "nan"))
-        if tag == "tr":
-            self.rows.append([])
-        if tag == "td":
-            self.rows[-1].append("")
-            self.inside = True
-        self.sources += [v for k, v in attrs if k == "src" and v]
-        self.links += [v for k, v in attrs if k == "href" and v]
-
-    def handle_endtag(self, tag: str) -> None:
-        self.inside = self.inside and tag != "td"
-
-    def handle_data(self, data: str) -> None:
-        self.words.append(data)
-        if self.inside:
-            self.rows[-1][-1] = (self.rows[-1][-1] + data).strip()

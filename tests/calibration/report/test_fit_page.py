@@ -9,7 +9,8 @@ import shlex
 from pathlib import Path
 
 import pytest
-from report_cases import Page, beam_folder
+from html_page import Page
+from report_cases import beam_folder
 from typer.testing import CliRunner
 
 from calibration.experiment import read

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from report_cases import Page, beam_folder, calibration, coupon_folder, estimate, failed
+from html_page import Page
+from report_cases import beam_folder, calibration, coupon_folder, estimate, failed
 
 from calibration.cli import names_in
 from calibration.experiment import read

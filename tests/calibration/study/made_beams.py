@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from _folders import beam_entry, capture_entry, outline_columns, write_experiment
 from numpy.typing import NDArray
+from photograph_errors import photographed
 from scipy.interpolate import CubicSpline
 
 import tisim
@@ -51,7 +52,7 @@ def made(
         captures = []
         for k in range(photographs):
             file = f"beams/{identifier}-{k}.csv"
-            upper, lower = _photograph(edges, rng, noise)
+            upper, lower = photographed(edges, rng, noise, _contour_error)
             tables[file] = outline_columns(upper, lower)
             captures.append(capture_entry(10.0 + k, file))
         trials.append(
@@ -94,20 +95,7 @@ def _edge(result: tisim.Result, side: float, rng: np.random.Generator) -> Array:
     return 1e3 * curve(at + rng.uniform(-3e-4, 3e-4, len(at)))
 
 
-def _photograph(edges: Sequence[Array], rng: np.random.Generator, noise: float) -> tuple[Array, Array]:
-    shift = 0.1 * noise * rng.standard_normal(2)
-    roll = np.radians(0.15) * noise * rng.standard_normal()
-    scale = 1.0 + 0.003 * noise * rng.standard_normal()
-    turn = np.array([[np.cos(roll), -np.sin(roll)], [np.sin(roll), np.cos(roll)]])
-    found = []
-    for edge in edges:
-        step = np.gradient(edge, axis=0)
-        along = step / np.linalg.norm(step, axis=1)[:, None]
-        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(edge, axis=0), axis=1))])
-        C = np.exp(-((s[:, None] - s[None]) ** 2) / (2.0 * 5.0**2))
-        values, vectors = np.linalg.eigh(C)
-        error = 0.1 * noise * vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.standard_normal(len(s)))
-        error += 0.002 * noise * rng.standard_normal(len(s))  # rounding by the tracer
-        traced = edge + error[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
-        found.append(scale * traced @ turn.T + shift)
-    return found[0], found[1]
+def _contour_error(correlations: Array, sd: float, rng: np.random.Generator) -> Array:
+    values, vectors = np.linalg.eigh(correlations)
+    error = sd * vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.standard_normal(len(values)))
+    return np.asarray(error + 0.02 * sd * rng.standard_normal(len(values)))  # rounding by the tracer

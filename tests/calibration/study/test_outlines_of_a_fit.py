@@ -43,8 +43,8 @@ def experiment(tmp_path_factory: pytest.TempPathFactory) -> Experiment:
             lengths_mm=(50.0, 80.0),
             photographs=2,
             noise=0.0,
-            layer=COARSE.layer,
-            rings=COARSE.rings,
+            layer=COARSE.axial_element_size,
+            rings=COARSE.radial_elements,
         )
     )
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from timed_coupons import CYCLES, RELAXATION, REST, SOLID, trial, write
+from timed_coupons import CYCLES, RELAXATION, REST, SOLID, TRUTH, trial, write
 
 import calibration
 import tisim
@@ -22,17 +22,6 @@ from calibration.study.calibration import Calibration
 from factory.materials import load_card
 from tisim.course import Course
 
-TRUTH = {
-    "shear_modulus": SOLID.shear_modulus,
-    "alpha": 3.0,
-    "prony_fraction_1": 0.3,
-    "prony_time_1": 2.0,
-    "prony_fraction_2": 0.2,
-    "prony_time_2": 60.0,
-    "mullins_r": 1.8,
-    "mullins_m": 1500.0,
-    "mullins_beta": 0.15,
-}
 FAST = {"generations": 4, "workers": 1, "seed": 1}  # the polish converges to the same optimum
 
 

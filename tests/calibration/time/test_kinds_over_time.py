@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from timed_coupons import REST, SOLID, trial
+from timed_coupons import REST, SOLID, TRUTH, trial
 
 from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony, Solid
@@ -29,17 +29,6 @@ VISCOUS = replace(SOLID, softening=None)
 WORN = replace(SOLID, prony=Prony())
 HELD = REST.ramp(0.8, 0.1).hold(60.0).ramp(0.65, 0.1).hold(60.0)
 CYCLED = REST.ramp(0.85, 0.05).ramp(0.95, 0.05).ramp(0.65, 0.05).ramp(0.95, 0.05)
-TRUTH = {
-    "shear_modulus": SOLID.shear_modulus,
-    "alpha": 3.0,
-    "prony_fraction_1": 0.3,
-    "prony_time_1": 2.0,
-    "prony_fraction_2": 0.2,
-    "prony_time_2": 60.0,
-    "mullins_r": 1.8,
-    "mullins_m": 1500.0,
-    "mullins_beta": 0.15,
-}
 
 
 def experiment(*trials: Trial) -> Experiment:

@@ -19,6 +19,18 @@ SOLID = Solid(
     prony=Prony(fractions=(0.3, 0.2), times=(2.0, 60.0)),
     softening=Softening(r=1.8, m=1500.0, beta=0.15),
 )
+# of `SOLID`, by the names of a fit's parameters
+TRUTH = {
+    "shear_modulus": SOLID.shear_modulus,
+    "alpha": 3.0,
+    "prony_fraction_1": 0.3,
+    "prony_time_1": 2.0,
+    "prony_fraction_2": 0.2,
+    "prony_time_2": 60.0,
+    "mullins_r": 1.8,
+    "mullins_m": 1500.0,
+    "mullins_beta": 0.15,
+}
 REST = Course(start=1.0, samples=30)
 RELAXATION = REST.ramp(1.5, 0.5).hold(300.0).ramp(1.02, 0.1).hold(100.0)
 CYCLES = REST.ramp(1.3, 0.05).ramp(1.02, 0.05).ramp(1.7, 0.05).ramp(1.02, 0.05)

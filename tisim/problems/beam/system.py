@@ -132,7 +132,7 @@ class BeamSystem:
         return residual, max(self.load_scale(force), self._rounding(x) / self.tolerance)
 
     def load_scale(self, force: Array) -> float:
-        """What a residual is relative to [N], for internal forces (n, 3): the load, or that of the clamps."""
+        """Scale of a residual [N], for internal forces (n, 3): the load, or that of the clamps."""
         load = max(self.body.load_norm(), self.least_load)
         if self.clamps_load:
             held = (force - self.body.dead_load)[self.body.discretisation.fixed]

@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.discretisation.history import weight
-from tisim.parts import Spectrum
+from tisim.parts import Spectrum, ramp_weight
 from tisim.scene import Beam
 
 Array = NDArray[np.float64]
@@ -45,7 +44,7 @@ class LinearCreep:
 
     def _weights(self, dt: float) -> tuple[Array, Array]:
         h = dt / self._spectrum.times
-        return np.exp(-h), self._spectrum.strengths * weight(h)
+        return np.exp(-h), self._spectrum.strengths * ramp_weight(h)
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,8 +52,8 @@ def paper_stop(
     Parameters
     ----------
     run : Result
-        Of method "implicit" or "explicit". Its frames are evenly spaced, except the last, and divide the
-        window.
+        A run of the method "implicit" or "explicit". Its frames are evenly spaced, except the last, and
+        divide the window.
     equilibrium : ndarray of float, shape (n, 3)
         Node positions [m] by the static method on the same mesh.
     window_steps, windows : int

@@ -214,7 +214,7 @@ def discretise(result: Result, frame: int) -> Discretisation:
         parts = TetrahedralParts(result.mesh, found.reference)
         way = np.diff(result.load, prepend=0.0)
         for back, x in zip(way[: frame + 1] < 0.0, result.positions, strict=False):
-            parts.mends = bool(back) or bool(result.scene.turns)
+            parts.may_recover = bool(back) or bool(result.scene.turns)
             parts.update(x)
     return found
 

@@ -178,7 +178,7 @@ class PokeSystem:
     def turn(self, way: float) -> None:
         """Set the sense of motion, way > 0 down or way < 0 up; going up, tetrahedral parts may fall again."""
         if self._parts is not None:
-            self._parts.mends = way < 0.0
+            self._parts.may_recover = way < 0.0
 
     def touch(self, guess: Array) -> None:
         """Estimate from the start value the fraction of the step in which each point is in contact."""

@@ -13,7 +13,7 @@ from calibration._numerics import arc_length
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.experiment.model import BeamTrial
 from calibration.measurements.outlines._edges import edges
-from calibration.measurements.outlines._photographs import SeenPhotograph, feet_of
+from calibration.measurements.outlines._photographs import SeenPhotograph, projections_of
 from calibration.measurements.outlines.model import OutlineModel
 
 Array = NDArray[np.float64]
@@ -25,14 +25,14 @@ class DrawnEdge:
 
     Attributes
     ----------
-    foot, normal : projections onto the baseline's edge, and unit normals there, shape (k, 2).
+    nearest, normal : projections onto the baseline's edge, and unit normals there, shape (k, 2).
     before, after : distances without nuisances by the baseline and by the extension (None without one), (k,).
     smooth_before, smooth_after : their smooth parts, which fits compare, shape (k,).
     smooth_sd : standard deviation of the smooth part by the contour error, shape (k,).
     along : distance from the clamp along the traced edge, shape (k,).
     """
 
-    foot: Array
+    nearest: Array
     normal: Array
     before: Array
     after: Array | None
@@ -135,7 +135,7 @@ def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotogra
         assert smooth is not None
         found = [
             DrawnEdge(
-                foot=f.foot,
+                nearest=f.nearest,
                 normal=f.normal,
                 before=left[part],
                 after=None if later is None else later[part],
@@ -145,7 +145,7 @@ def drawn(model: OutlineModel, diagnosis: Diagnosis, seen: Sequence[SeenPhotogra
                 along=traced[0, 0] + arc_length(traced),
             )
             for f, part, traced in zip(
-                feet_of(p, result), parts, (p.outline.upper, p.outline.lower), strict=True
+                projections_of(p, result), parts, (p.outline.upper, p.outline.lower), strict=True
             )
         ]
         by_trial.setdefault(p.beam, []).append(DrawnPhotograph(time=p.time, upper=found[0], lower=found[1]))

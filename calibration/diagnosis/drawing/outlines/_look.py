@@ -13,7 +13,7 @@ from calibration.pages import INK, round_magnification
 
 MEASURED, EXTENDED = "Blues", "Oranges"
 CLAMP = "#6B7480"
-_AWAY = 0.8  # of half a beam's height that the largest departure is drawn as: edges must not meet
+_AWAY = 0.8  # largest distance as drawn, over half a beam's height: edges must not meet
 
 
 def shade(family: str, nth: int, count: int) -> Any:

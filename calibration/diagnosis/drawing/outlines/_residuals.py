@@ -33,7 +33,7 @@ def draw_residuals(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figur
                 axes.set_visible(False)
             else:
                 _panel(axes, beam, apart=apart)
-        line[0].set_ylabel("departure / mm", fontsize=8)
+        line[0].set_ylabel("residual / mm", fontsize=8)
     for column in zip(*panels, strict=True):
         lowest = [axes for axes in column if axes.get_visible()][-1]
         lowest.set_xlabel("from the clamp / mm", fontsize=8)

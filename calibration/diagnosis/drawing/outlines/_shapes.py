@@ -71,9 +71,9 @@ def draw_shapes(beams: Sequence[DrawnTrial], *, apart: bool = False) -> Figure:
         + ("." if apart else "; blue lines: the smooth part of their mean.")
         + (
             " Orange lines: the extended simulation, magnified alike. Where what was measured lies on"
-            " them and not on the grey body's edge, the extension says what the baseline lacks."
+            " them and not on the grey body's edge, the extension represents what the baseline lacks."
             if extended
-            else " Where that lies on the grey body's edge, the baseline says what was measured."
+            else " Where that lies on the grey body's edge, the baseline reproduces the measurement."
         )
         + left_out(missing),
         figure=figure,
@@ -89,7 +89,7 @@ def _panel(axes: Any, beam: DrawnTrial, factor: float, depth: float, *, apart: b
     count = len(beam.photographs)
     for n, p in enumerate(beam.photographs):
         for e in p.edges:
-            every = max(1, len(e.foot) // DOTS)
+            every = max(1, len(e.nearest) // DOTS)
             dots = _moved(e, factor, e.before)[n % every :: every]
             axes.plot(*dots.T, "o", ms=2.0, mew=0, alpha=0.8, color=shade(MEASURED, n, count), zorder=3)
             if apart and e.smooth_after is not None:
@@ -106,7 +106,7 @@ def _panel(axes: Any, beam: DrawnTrial, factor: float, depth: float, *, apart: b
 
 
 def _moved(edge: DrawnEdge, factor: float, distance: Any) -> Any:
-    return 1e3 * (edge.foot + factor * distance[:, None] * edge.normal)
+    return 1e3 * (edge.nearest + factor * distance[:, None] * edge.normal)
 
 
 def _mean(beam: DrawnTrial, side: str, factor: float, *, extended: bool) -> Any:

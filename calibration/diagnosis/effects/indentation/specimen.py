@@ -95,7 +95,8 @@ RELAXATION = IndentationEffect(
     variants=_variants_relaxation,
     variant_label=lambda variant: f"in {variant:.3g} s",
     identifiable=_identifiable_relaxation,
-    action="hold the rod at the deepest depth for a minute, or poke at a tenth and ten times the speed",
+    action="hold the indenter at the largest depth for a minute, or indent at a tenth and ten times the"
+    " speed",
     hands_on=_viscosity_relaxation,
 )
 
@@ -149,7 +150,7 @@ MULLINS = IndentationEffect(
     applies_to=lambda record: record.reloaded,
     identifiable=loads_again,
     hands_on=_softening_mullins,
-    action="poke the same place twice to the same depth",
+    action="indent the same point twice to the same depth",
 )
 
 

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 def _instead_locking(beam: Beam) -> Beam:
-    return replace(beam, element="default", axial_element_size=COARSE.layer, radial_elements=2)
+    return replace(beam, element="default", axial_element_size=COARSE.axial_element_size, radial_elements=2)
 
 
 LOCKING = OutlineEffect(

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 REPEATS = 4  # least number of repeats of one test: mean and trend take two degrees of freedom
 GRID = 24  # points along the records at which they are compared
 NOTABLE = 4.0  # least ratio of the mean square of a trend in the order of repeats to that by chance
-BEND = 4  # highest polynomial degree of a record's own deviation
+DEGREE = 4  # highest polynomial degree of a record's own deviation
 WIDEST = 3.0  # most by which the variance of a scatter from few repeats is increased
 CERTAIN = 3.0  # standard errors by which the scatter between repeats exceeds what noise makes of it
 
@@ -53,16 +53,16 @@ class Curve:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layers:
+class VarianceComponents:
     """Standard deviations as fractions of full scale; None if there are no tests to estimate them.
 
     Attributes
     ----------
     repeat : standard deviation between repeats on one specimen, without the trend in their order and beyond
         the noise from point to point; 0 if repeats differ by this noise only.
-    bends : the same by degree of the record's own deviation, 0 to BEND (`deviations`); the root of the sum of
-        their squares is `repeat`. A scatter of areas or load cells is one of low degrees. Empty without
-        repeats.
+    by_degree : the same by degree of the record's own deviation, 0 to DEGREE (`deviations`); the root of the
+        sum of their squares is `repeat`. A scatter of areas or load cells is one of low degrees. Empty
+        without repeats.
     order : change of the misfit from the first to the last repeat by that trend: rms along the record, with
         the sign of its mean. None if noise and scatter make as much (NOTABLE).
     specimen : standard deviation between the means of specimens of one material in one test.
@@ -71,7 +71,7 @@ class Layers:
     """
 
     repeat: float | None = None
-    bends: tuple[float, ...] = ()
+    by_degree: tuple[float, ...] = ()
     order: float | None = None
     specimen: float | None = None
     repeats: tuple[str, ...] = ()
@@ -79,14 +79,14 @@ class Layers:
 
     @property
     def expected(self) -> tuple[float, ...]:
-        """`bends` of another test, whose scatter is known from few repeats: of Student's t distribution.
+        """`by_degree` of another test, whose scatter is known from few repeats: Student's t distribution.
 
         Its variance is dof / (dof - 2) times that of the estimate; WIDEST at most, where that is not finite.
         """
-        if not self.bends:
+        if not self.by_degree:
             return ()
         wider = min(self.dof / (self.dof - 2.0), WIDEST) if self.dof > 2.0 else WIDEST
-        return tuple(sqrt(wider) * bend for bend in self.bends)
+        return tuple(sqrt(wider) * sd for sd in self.by_degree)
 
     def to_json(self) -> dict[str, float]:
         found = {"repeat": self.repeat, "order": self.order, "specimen": self.specimen}
@@ -111,7 +111,7 @@ class Layers:
         return [text]
 
 
-def layers_of(curves: Sequence[Curve]) -> Layers:
+def variance_components(curves: Sequence[Curve]) -> VarianceComponents:
     """Estimate the variance components.
 
     `repeat` and `order` use groups of at least REPEATS records of one test on one specimen; `specimen` uses
@@ -121,13 +121,13 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
     for c in curves:
         if c.test is not None:
             groups.setdefault((c.material, c.specimen, c.test), []).append(c)
-    scatter, orders, dofs, names = np.zeros(BEND + 1), [], 0.0, []
+    scatter, orders, dofs, names = np.zeros(DEGREE + 1), [], 0.0, []
     means: dict[Hashable, list[Array]] = {}
     for (material, _, test), group in ((k, g) for k, g in groups.items() if isinstance(k, tuple)):
-        together = _together(group)
-        if together is None:
+        common = _on_common_grid(group)
+        if common is None:
             continue
-        values = together.values
+        values = common.values
         means.setdefault((material, test), []).append(values.mean(axis=0))
         if len(group) < REPEATS:
             continue
@@ -135,19 +135,19 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
         trend = number @ values / (number @ number)
         left = values - values.mean(axis=0) - number[:, None] * trend
         free = len(group) - 2.0  # after mean and trend
-        own = _scatter(left, together, free)
+        own = _scatter(left, common, free)
         scatter += free * own
         whole = trend * (len(group) - 1)
-        by_chance = (own.sum() + together.noise) * (len(group) - 1) ** 2 / (number @ number)
+        by_chance = (own.sum() + common.noise) * (len(group) - 1) ** 2 / (number @ number)
         if np.mean(whole**2) > NOTABLE * by_chance:
             orders.append(float(np.sign(whole.mean()) * np.sqrt(np.mean(whole**2))))
         dofs += free
         names += [c.name for c in group]
     apart = [np.var(np.array(m), axis=0, ddof=1).mean() for m in means.values() if len(m) > 1]
-    bends = np.sqrt(scatter / dofs) if dofs else np.zeros(0)
-    return Layers(
-        repeat=float(np.linalg.norm(bends)) if dofs else None,
-        bends=tuple(bends.tolist()),
+    by_degree = np.sqrt(scatter / dofs) if dofs else np.zeros(0)
+    return VarianceComponents(
+        repeat=float(np.linalg.norm(by_degree)) if dofs else None,
+        by_degree=tuple(by_degree.tolist()),
         order=float(np.mean(orders)) if orders else None,
         specimen=float(np.sqrt(np.mean(apart))) if apart else None,
         repeats=tuple(names),
@@ -156,12 +156,12 @@ def layers_of(curves: Sequence[Curve]) -> Layers:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Together:
+class _CommonGrid:
     """Misfits of repeats on a common grid, over full scale.
 
     Attributes
     ----------
-    x : places in the common range of x, branch after branch, shape (m,).
+    x : positions in the common range of x, branch after branch, shape (m,).
     values : shape (records, m).
     noise : mean variance that the noise from point to point gives them.
     coefficient_noise : variance that it gives a coefficient of an orthonormal function along x.
@@ -173,36 +173,36 @@ class _Together:
     coefficient_noise: float
 
 
-def _scatter(left: Array, together: _Together, free: float) -> Array:
-    """Variance between repeats by degree, shape (BEND + 1,), beyond the noise; zeros if noise makes as much.
+def _scatter(left: Array, common: _CommonGrid, free: float) -> Array:
+    """Variance between repeats by degree, shape (DEGREE + 1,), beyond the noise; zeros if it is no larger.
 
     `left` (records, m): values without mean and trend; `free`: degrees of freedom of each degree.
     """
-    functions = _functions(together.x, np.unique(together.x).size)
+    functions = _functions(common.x, np.unique(common.x).size)
     fitted = np.linalg.lstsq(functions.T, left.T, rcond=None)[0]
-    found = np.zeros(BEND + 1)
+    found = np.zeros(DEGREE + 1)
     found[: len(functions)] = (fitted**2).sum(axis=1) / free
-    by_noise = len(functions) * together.coefficient_noise
+    by_noise = len(functions) * common.coefficient_noise
     if found.sum() <= (1.0 + CERTAIN * sqrt(2.0 / (free * len(functions)))) * by_noise:
-        return np.zeros(BEND + 1)
-    found[: len(functions)] -= together.coefficient_noise
+        return np.zeros(DEGREE + 1)
+    found[: len(functions)] -= common.coefficient_noise
     return np.maximum(found, 0.0)
 
 
-def _functions(x: Array, places: int) -> Array:
-    """Legendre polynomials over the range of x (k,), as many as there are places and at most to degree BEND.
+def _functions(x: Array, positions: int) -> Array:
+    """Legendre polynomials over the range of x (k,), at most as many as positions, and up to DEGREE.
 
     Their mean square over the range is 1; shape (degrees, k).
     """
-    return np.array([sqrt(2.0 * d + 1.0) * legendre(x, d) for d in range(min(BEND + 1, places))])
+    return np.array([sqrt(2.0 * d + 1.0) * legendre(x, d) for d in range(min(DEGREE + 1, positions))])
 
 
-def _together(group: Sequence[Curve]) -> _Together | None:
+def _on_common_grid(group: Sequence[Curve]) -> _CommonGrid | None:
     """Misfits over full scale on a grid of their common range of x in each branch.
 
     None if they have no common range in any branch.
     """
-    places, found, noise, independent = [], [], [], 0.0
+    positions, found, noise, independent = [], [], [], 0.0
     for branch in np.unique(group[0].branch):
         own = [c.branch == branch for c in group]
         if not all(mine.any() for mine in own):
@@ -220,28 +220,29 @@ def _together(group: Sequence[Curve]) -> _Together | None:
             # interpolated white noise has two thirds of its variance
             independent += min(float(np.count_nonzero((x >= low) & (x <= high))), 1.5 * GRID) / len(group)
             noise.append(float(np.mean(sd**2)) / c.scale**2)
-        places.append(grid)
+        positions.append(grid)
         found.append(np.array(values))
     if not found:
         return None
     point = float(np.mean(noise))
-    return _Together(
-        x=np.concatenate(places),
+    return _CommonGrid(
+        x=np.concatenate(positions),
         values=np.concatenate(found, axis=1),
         noise=2.0 / 3.0 * point,
         coefficient_noise=point / independent,
     )
 
 
-def deviations(curves: Sequence[Curve], bends: Sequence[float]) -> list[list[Array]]:
-    """Nuisance columns [SI] for the own deviation of each record: Legendre polynomials of degree 0 to BEND.
+def deviations(curves: Sequence[Curve], by_degree: Sequence[float]) -> list[list[Array]]:
+    """Nuisance columns [SI] for the own deviation of each record: Legendre polynomials up to DEGREE.
 
-    Each is one standard deviation: bends[d] times full scale is its root mean square over the range of x.
+    Each is one standard deviation: by_degree[d] times full scale is its root mean square over the range of
+    x.
     """
     return [
         [
             c.scale * size * column
-            for size, column in zip(bends, _functions(c.x, c.x.size), strict=False)
+            for size, column in zip(by_degree, _functions(c.x, c.x.size), strict=False)
             if size
         ]
         for c in curves
