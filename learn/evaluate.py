@@ -44,7 +44,7 @@ def main(
         ),
     ] = False,
     baselines: Annotated[bool, typer.Option(help="Evaluate the baselines too.")] = True,
-    clouds: Annotated[bool, typer.Option(help="Evaluate on other point clouds too.")] = True,
+    clouds: Annotated[bool, typer.Option(help="Evaluate at scattered points too.")] = True,
     ensemble: Annotated[
         bool,
         typer.Option(

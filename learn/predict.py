@@ -28,6 +28,10 @@ with poke.yaml, for instance:
   shape: cube-18            # or inclusion: {kind: sphere, radius_mm: 8, centre_mm: \\[0, 0, 6]}
   softness: S0.5            # or shear_modulus_kPa: 12
 
+At a lab's own points of the top face too, such as markers, a CSV file with columns x_mm and y_mm:
+
+  python -m learn.predict runs/quick datasets/scenes/poke.yaml --points markers.csv
+
 Every prediction states whether the poke is inside the trained ranges.
 
 Exit codes: 0 done, 2 bad input, or outside the training with --strict.
@@ -40,12 +44,20 @@ def main(
     ],
     scene: Annotated[Path, typer.Argument(help="YAML file with the poke.")],
     dataset: Dataset = None,
+    points: Annotated[
+        Path | None,
+        typer.Option(
+            help="CSV file of points of the top face (x_mm, y_mm, and names in id): points.csv has the"
+            " displacement there.",
+            metavar="FILE",
+        ),
+    ] = None,
     strict: Annotated[
         bool,
         typer.Option("--strict", help="Refuse pokes outside the domain of validity (exit code 2)."),
     ] = False,
     out: Annotated[
-        Path, typer.Option(help="Folder for displacement.csv, prediction.json and the picture.")
+        Path, typer.Option(help="Folder for displacement.csv, points.csv, prediction.json and the picture.")
     ] = Path("prediction"),
     plugin: Plugins = None,
     _version: Version = False,
@@ -57,7 +69,7 @@ def main(
 
         load_plugins(plugin or [])
         predictor = load(list(runs), dataset=dataset)
-        answer = predictor.predict(scene, strict=strict)
+        answer = predictor.predict(scene, points=points, strict=strict)
         answer.save(out)
         for key, value in answer.as_dict().items():
             if isinstance(value, float):
@@ -72,7 +84,8 @@ def main(
         for check in answer.checks:
             if not check.inside:
                 console.print(f"  {check.text}")
-        console.print(f"{out}: displacement.csv, prediction.json, prediction.png")
+        files = ["displacement.csv", *(["points.csv"] if points else []), "prediction.json", "prediction.png"]
+        console.print(f"{out}: {', '.join(files)}")
 
 
 app = single(main, EXAMPLES)

@@ -11,12 +11,10 @@ Both objects print as tables in a notebook, the answer with its picture.
 
 from __future__ import annotations
 
-import io
-import json
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -27,141 +25,16 @@ from numpy.typing import NDArray
 from learn.data import Store
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation import Intervals, join_runs, load_intervals
-from learn.evaluation.pictures import draw_prediction, encoded
-from learn.models import Pokes, Response, Scene
+from learn.models import Response
+from learn.models.at_points import respond_at
+from learn.points_file import AskedPoints, points_on_top
+from learn.prediction import AtPoints, PokePrediction, html_table
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, check_dataset, known_domain, load_run, open_dataset
-from learn.training.run_folder import write_whole
-from learn.validity import Check, Domain, gap_mm, poke_values, unknown_checks
+from learn.validity import Domain, gap_mm, poke_values, unknown_checks
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PokePrediction:
-    """The prediction of one poke. SI units.
-
-    Attributes
-    ----------
-    poke : the requested poke.
-    points : rest positions of the surface's points [m], shape (n, 3).
-    displacement : displacement of these points [m], shape (n, 3).
-    force : magnitude of the force on the indenter [N].
-    radius : radius of the 90 % interval at each point [m], shape (n,); None without intervals.
-    force_interval : 90 % interval of the force [N]; None without intervals, and for a predicted force that is
-        0 or less, as model cegnn may have it, around which no factor makes an interval.
-    checks : comparison of each quantity with its trained range.
-    scene, pokes : the model's input.
-    """
-
-    poke: PokeScene
-    points: Floats
-    displacement: NDArray[np.float32]
-    force: float
-    radius: Floats | None
-    force_interval: tuple[float, float] | None
-    checks: list[Check]
-    scene: Scene
-    pokes: Pokes
-
-    @property
-    def inside(self) -> bool | None:
-        """True if the poke is inside the domain of validity; None if that is not known."""
-        if any(check.inside is False for check in self.checks):
-            return False
-        return None if all(check.inside is None for check in self.checks) else True
-
-    @property
-    def outside(self) -> list[Check]:
-        """Checks of the quantities outside the domain of validity."""
-        return [check for check in self.checks if check.inside is False]
-
-    @property
-    def verdict(self) -> str:
-        """One sentence on the domain of validity."""
-        if self.inside is None:
-            return "The trained ranges are not known: the prediction may be wrong."
-        if self.inside:
-            return "Inside the trained ranges."
-        names = ", ".join(
-            f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
-        )
-        wider = "" if self.radius is None else "; the intervals are wider, and not calibrated there"
-        return f"Outside the trained ranges: {names}. The force may be wrong by a factor{wider}."
-
-    def as_dict(self) -> dict[str, Any]:
-        """The numbers of prediction.json."""
-        size = np.linalg.norm(self.displacement, axis=1)
-        answer: dict[str, Any] = {
-            "force_N": self.force,
-            "largest_displacement_mm": float(size.max() * 1e3),
-        }
-        if self.force_interval is not None:
-            low, high = self.force_interval
-            answer |= {"force_low_N": low, "force_high_N": high}
-        if self.radius is not None:
-            answer |= {"radius_mean_mm": float(self.radius.mean() * 1e3)}
-            answer |= {"radius_max_mm": float(self.radius.max() * 1e3)}
-        answer["inside_training"] = self.inside
-        answer["domain"] = {
-            check.key: {"value": check.value, "trained": check.trained, "inside": check.inside}
-            for check in self.checks
-        }
-        return answer
-
-    def save(self, folder: Path | str) -> Path:
-        """Write FOLDER/displacement.csv, prediction.json and prediction.png.
-
-        All are made before the first is written, so that a fault leaves an earlier prediction as it was.
-        """
-        folder = Path(folder)
-        columns = [self.points * 1e3, self.displacement * 1e3]
-        heads = "x_mm,y_mm,z_mm,ux_mm,uy_mm,uz_mm"
-        if self.radius is not None:
-            columns, heads = [*columns, self.radius[:, None] * 1e3], f"{heads},radius_mm"
-        table = np.concatenate(columns, axis=1)
-        rows, picture = io.StringIO(), io.BytesIO()
-        np.savetxt(rows, table, delimiter=",", header=heads, comments="", fmt="%.6g")
-        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
-        self.picture().savefig(picture, format="png", dpi=110)
-        folder.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / "displacement.csv", rows.getvalue().encode())
-        write_whole(folder / "prediction.json", text.encode())
-        write_whole(folder / "prediction.png", picture.getvalue())
-        return folder
-
-    def picture(self) -> Any:
-        """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
-        title = f"force {self._force_text}, {'inside' if self.inside else 'OUTSIDE'} the trained ranges"
-        return draw_prediction(self.scene, self.pokes, self.displacement, radius=self.radius, title=title)
-
-    @property
-    def _force_text(self) -> str:
-        if self.force_interval is None:
-            why = "" if self.radius is None else " (no interval: it is 0 N or less)"
-            return f"{self.force:.3g} N{why}"
-        low, high = self.force_interval
-        return f"{self.force:.3g} N (90 %: {low:.3g} to {high:.3g})"
-
-    def __repr__(self) -> str:
-        largest = float(np.linalg.norm(self.displacement, axis=1).max() * 1e3)
-        return (
-            f"PokePrediction(force {self._force_text}, largest displacement {largest:.3g} mm; {self.verdict})"
-        )
-
-    def _repr_html_(self) -> str:
-        rows = [("force", self._force_text), ("", self.verdict), *((c.name, _value(c)) for c in self.checks)]
-        return f'{_html_table(rows)}<img src="data:image/png;base64,{encoded(self.picture())}">'
-
-
-def _value(check: Check) -> str:
-    return check.text.removeprefix(f"{check.name} ").partition(":")[0]
-
-
-def _html_table(rows: Sequence[tuple[str, str]]) -> str:
-    cells = "".join(f"<tr><th>{escape(key)}</th><td>{escape(value)}</td></tr>" for key, value in rows)
-    return f"<table>{cells}</table>"
 
 
 class Predictor:
@@ -180,19 +53,25 @@ class Predictor:
         self.domain = known_domain(run, store)
 
     def predict(
-        self, scene: Path | str | Mapping[str, Any] | PokeScene, *, strict: bool = False
+        self,
+        scene: Path | str | Mapping[str, Any] | PokeScene,
+        *,
+        points: Path | str | Floats | None = None,
+        strict: bool = False,
     ) -> PokePrediction:
         """Predict displacement and force of one poke, and compare it with the domain of validity.
 
         Parameters
         ----------
         scene : keys and values as in `learn.scene_file.PokeScene`, or the path of a YAML file of them.
+        points : points of the top face at which the displacement is asked besides the grid's, (x, y), shape
+            (n, 2) [m], or the path of a CSV file of them [mm] (`learn.points_file.load_points`).
         strict : refuse pokes that are not inside the domain of validity.
 
         Raises
         ------
         InputError
-            If a key is wrong, or the poke does not fit the block.
+            If a key is wrong, the poke does not fit the block, or a point lies beside the top face.
         OutsideDomainError
             If `strict` is set and the poke is outside the domain of validity, or that is not known.
         """
@@ -209,9 +88,8 @@ class Predictor:
             timed = "with" if self.run.model.takes_clock else "without"
             raise InputError(f"{where}: {wanted} the model was trained {timed} time")
         given = scene_and_poke(poke, self.store, where)
-        with torch.no_grad():
-            response = self.run.model(given.scene, given.pokes)
-        answer = self._answer(poke, given, response)
+        asked = None if points is None else points_on_top(points, given.setup)
+        answer = self._answer(poke, given, asked)
         if not (np.isfinite(answer.displacement).all() and np.isfinite(answer.force)):
             raise InputError(f"{where}: the model's answer is not finite")
         if strict and answer.inside is not True:
@@ -233,59 +111,62 @@ class Predictor:
         """
         return RealTime(self, interior)
 
-    def _answer(self, poke: PokeScene, given: PokeInput, response: Response) -> PokePrediction:
+    def _answer(self, poke: PokeScene, given: PokeInput, asked: AskedPoints | None) -> PokePrediction:
         setup, interior, scene, pokes = given
-        u, force = response.displacement.numpy(), float(response.force[0])
-        start, direction = pokes.start[0].numpy(), pokes.direction[0].numpy()
+        start, direction, depth = pokes.start[0].numpy(), pokes.direction[0].numpy(), float(pokes.depth[0])
         values = poke_values(
             setup,
             interior,
             start=start,
             direction=direction,
-            depth=float(pokes.depth[0]),
+            depth=depth,
             modulus=float(pokes.modulus[0]),
             clock=pokes.clock[0].numpy(),
         )
-        asked = values, kind_of(poke, self.store), poke.law
         distance = self.domain.distance(values, poke.law) if self.domain else 0.0
-        away = np.linalg.norm(setup.points - pokes.start.numpy(), axis=1)
-        depth = float(pokes.depth[0])
         near = np.array([interior.size, gap_mm(setup, interior, start + depth * direction)])
-        radius, factor = self._interval(response, away, depth, near, distance)
+
+        def radius(points: Floats, response: Response) -> Floats | None:
+            if self.intervals is None:
+                return None
+            return 1e-3 * self.intervals.radius_at_mm(
+                np.linalg.norm(response.displacement[0].numpy(), axis=1),
+                away=np.linalg.norm(points - start, axis=1),
+                depth=depth,
+                spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
+                size_gap=near,
+                distance=distance,
+            )
+
+        with torch.no_grad():
+            response = self.run.model(scene, pokes)
+        force, interval = float(response.force[0]), None
+        if self.intervals is not None and force > 0.0:
+            spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
+            factor = math.exp(self.intervals.force_log(spread, size_gap=near, distance=distance))
+            interval = force / factor, force * factor
+        at_points = None
+        if asked is not None:
+            there = respond_at(self.run.model, setup, scene, pokes, asked.points)
+            at_points = AtPoints(
+                names=asked.names,
+                points=asked.points,
+                displacement=there.displacement[0].numpy(),
+                radius=radius(asked.points, there),
+            )
+        checked = values, kind_of(poke, self.store), poke.law
         return PokePrediction(
             poke=poke,
             points=setup.points,
-            displacement=u[0],
+            displacement=response.displacement[0].numpy(),
             force=force,
-            radius=radius,
-            force_interval=(force / factor, force * factor) if factor is not None and force > 0.0 else None,
-            checks=self.domain.check(*asked) if self.domain else unknown_checks(*asked),
+            radius=radius(setup.points, response),
+            force_interval=interval,
+            checks=self.domain.check(*checked) if self.domain else unknown_checks(*checked),
             scene=scene,
             pokes=pokes,
+            asked=at_points,
         )
-
-    def _interval(
-        self,
-        response: Response,
-        away: Floats,
-        depth: float,
-        size_gap: Floats,
-        distance: float,
-    ) -> tuple[Floats | None, float | None]:
-        """Radius at each point [m] and factor around the force; None without intervals."""
-        if self.intervals is None:
-            return None, None
-        radius = self.intervals.radius_at_mm(
-            np.linalg.norm(response.displacement[0].numpy(), axis=1),
-            away=away,
-            depth=depth,
-            spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
-            size_gap=size_gap,
-            distance=distance,
-        )
-        spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
-        grown = self.intervals.force_log(spread, size_gap=size_gap, distance=distance)
-        return radius * 1e-3, float(np.exp(grown))
 
     @cached_property
     def intervals(self) -> Intervals | None:
@@ -317,7 +198,7 @@ class Predictor:
         return "Predictor(\n" + "".join(f"  {key}: {value}\n" for key, value in self._rows()) + ")"
 
     def _repr_html_(self) -> str:
-        return _html_table(self._rows())
+        return html_table(self._rows())
 
 
 def _first_lower(text: str) -> str:

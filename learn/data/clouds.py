@@ -73,11 +73,11 @@ def jittered(setup: Setup, random: np.random.Generator) -> Floats:
 
 
 def nearest_columns(setup: Setup, points: Floats) -> NDArray[np.int64]:
-    """Index of the grid point nearest to each point of the top face, shape (n,)."""
+    """Index of the grid point in whose cell each point of the top face lies, shape (n,)."""
     side = round(len(setup.points) ** 0.5)
     low = setup.points.min(axis=0)[:2]
     step = (setup.points.max(axis=0)[:2] - low) / (side - 1)
-    column, row = np.rint(((points[:, :2] - low) / step).T).astype(int)
+    column, row = np.clip(np.rint(((points[:, :2] - low) / step).T).astype(int), 0, side - 1)
     return np.asarray(row * side + column, dtype=np.int64)
 
 

@@ -15,6 +15,7 @@ from learn.data import Batch, MemoryDataset, Setup, Store, make_batch
 from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, Scenes, pokes_of
+from learn.models.at_points import place
 from learn.validity import cover_at, gap_mm, interior_of
 
 Floats = NDArray[np.float64]
@@ -100,14 +101,30 @@ def predict_on(
 ) -> Predictions:
     """Predictions at other points of the top face, against interpolation of each poke's own surface mesh.
 
-    `cloud` makes the points of a setup's top face; `device` is the model's.
+    `cloud` makes the points of a setup's top face, as many for each; the model sees them as
+    `learn.models.at_points.place` places them. `device` is the model's.
     """
     field = surfaces or SurfaceField(store, np.unique(store.frame_poke[rows]).tolist())
-    points = {id(setup): cloud(setup) for setup in store.setups}
-    scenes = Scenes.of(store, lambda setup: points[id(setup)]).to(device)
-    return predict_batches(
-        model, scenes, store, _batches(store, rows, lambda setup: points[id(setup)], field)
-    )
+    placed = {id(setup): place(setup, cloud(setup)) for setup in store.setups}
+    found: list[Predictions] = []
+    for k in range(max(len(one.clouds) for one in placed.values())):
+
+        def points(setup: Setup, k: int = k) -> Floats:
+            clouds = placed[id(setup)].clouds
+            return clouds[min(k, len(clouds) - 1)]
+
+        scenes = Scenes.of(store, points).to(device)
+        found.append(predict_batches(model, scenes, store, _batches(store, rows, points, field)))
+    setup = store.setup_index[store.geometry[found[0].poke]]
+
+    def at_points(name: str) -> NDArray[Any]:
+        values = [getattr(one, name) for one in found]
+        each = [one.pick([v[setup == k] for v in values]) for k, one in enumerate(placed.values())]
+        out = np.concatenate(each)
+        out[np.argsort(setup, kind="stable")] = out.copy()
+        return out
+
+    return replace(found[0], **{name: at_points(name) for name in ("truth", "predicted", "away", "spread")})
 
 
 def interpolation_error_mm(store: Store, rows: NDArray[np.int64]) -> float:

@@ -257,11 +257,11 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
     }
     if found.clouds:
         note = (
-            "Same weights on other point clouds (means over clouds of each size), against "
-            "interpolation of the surface meshes; that interpolation alone is "
+            "At scattered points, each in the place of the grid point of its cell (means over clouds of each "
+            "size), against interpolation of the surface meshes; that interpolation alone is "
             f"{found.interpolation_mm:.4f} mm off the grid's stored values."
         )
-        result["Other clouds"] = full_table(found.clouds, "points"), [note]
+        result["Other points"] = full_table(found.clouds, "points"), [note]
     for bands, what, title in (
         (found.depths, "depth", "By depth"),
         (found.covers, "cover over the inclusion below the contact", "By cover"),

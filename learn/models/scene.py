@@ -113,6 +113,16 @@ def scene_on(setup: Setup, profile: NDArray[np.uint8], points: NDArray[np.float6
     )
 
 
+def over_same_columns(scene: Scene, setup: Setup, points: NDArray[np.float64]) -> Scene:
+    """The scene of a setup's grid with other points (m, 3) of its top face [m], as `scene_on` makes it."""
+    device = scene.points.device
+    return replace(
+        scene.at(nearest_columns(setup, points)),
+        points=torch.from_numpy(points).to(device),
+        area=torch.from_numpy(areas(points)).to(device),
+    )
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pokes:
     """Input of b predictions, as in `Batch`. SI units, float64.

@@ -17,8 +17,9 @@ import torch
 from numpy.typing import NDArray
 
 from learn.data import Batch, Store
-from learn.data.clouds import SurfaceField, areas, jittered, nearest_columns
+from learn.data.clouds import SurfaceField, jittered
 from learn.models import Scene, Scenes
+from learn.models.scene import over_same_columns
 from learn.training.recipe import Recipe
 
 _DROPOUT, _JITTER = 1, 2  # streams of random numbers
@@ -90,11 +91,7 @@ class Augmentation:
         jitter = self._random(_JITTER, step)
         if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
             points = jittered(self._setups[k], jitter)
-            scene = replace(
-                scene.at(nearest_columns(self._setups[k], points)),
-                points=torch.from_numpy(points).to(device),
-                area=torch.from_numpy(areas(points)).to(device),
-            )
+            scene = over_same_columns(scene, self._setups[k], points)
             moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
             batch = replace(batch, displacement=moved.to(device))
         dropout = self._random(_DROPOUT, step)
