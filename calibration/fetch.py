@@ -28,7 +28,7 @@ class Source:
     Attributes
     ----------
     name : on the command line.
-    about : what was measured, and what is not stated, a sentence or two.
+    about : the measurements, and what is not stated, in a sentence or two.
     cite : whom to cite.
     licence : its name. licence_file : that holds its text, one of `files`.
     base : URL of the version that is taken; a file's path follows it.
@@ -66,7 +66,7 @@ def fetch(name: str, folder: str | Path, *, base: str | None = None) -> Path:
 
     Parameters
     ----------
-    name : of a source.
+    name : name of a source.
     folder : empty or not there yet. It gets experiment.yaml, the records, source/ with the files as they
         came, and SOURCE.md with the licence and whom to cite.
     base : URL of a mirror, in place of the source's own.

@@ -34,7 +34,7 @@ class FitPlan:
     ----------
     tasks : list of Task
     experiment : Experiment
-        With the rig's corrections where a rig was given.
+        The experiment, with the rig's corrections if a rig was given.
     folder : Path
     workers : int
     rig : Rig, optional

@@ -64,7 +64,7 @@ def main(
         typer.Option("--domain", "--kind", help="Kind of measurement, if the experiment has several."),
     ] = None,
     law: Annotated[
-        str, typer.Option(help="Of the baseline of --calibrate: auto, or a name with terms (ogden:2).")
+        str, typer.Option(help="Law of the baseline of --calibrate: auto, or a name with terms (ogden:2).")
     ] = "auto",
     extend: Annotated[
         str,

@@ -32,7 +32,7 @@ class Fits(Sequence[Calibration]):
     experiment : Experiment
         As fitted, with the rig's corrections where a rig was given.
     folder : Path, optional
-        Where the fits are kept; None for fits that were made in memory.
+        Folder of the fits; None for fits that were made in memory.
     """
 
     results: tuple[Calibration, ...]

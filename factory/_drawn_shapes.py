@@ -169,7 +169,7 @@ class _Ground(BaseModel):
             Sides of the block that the shape gets for its own; None if it stands in the recipe's.
         random : numpy.random.Generator
         what : str
-            What is drawn, for the ValueError if nothing is found that fits.
+            Name of what is drawn, for the ValueError if nothing is found that fits.
         fault_of_cover : callable
             Reason why a shape under some thickness of tissue [mm] is not taken, or None.
         """

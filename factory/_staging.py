@@ -108,7 +108,7 @@ class Staging:
     def begin(self, identity: dict[str, Any], *, overwrites: bool = False) -> None:
         """Clear the folder and write the identity of the plan to build.
 
-        overwrites : whether the target holds a store that this build replaces when it is complete.
+        overwrites : True if the target holds a store that this build replaces when it is complete.
         """
         self.plan_file.unlink(missing_ok=True)  # first, since results without a plan are never used
         self.ledger_file.unlink(missing_ok=True)

@@ -97,7 +97,7 @@ class Plan:
     inclusions : tuple of Inclusion
         One per shape of the recipe.
     pokes : tuple of PlannedPoke
-        In the order in which they are stored.
+        Pokes in the order in which they are stored.
     identity : dict
         All input on which the bytes of the dataset depend.
     """

@@ -107,9 +107,9 @@ class RigFile(Strict):
     experiment, experiment_sha256 : name and SHA-256 of the experiment that was diagnosed.
     base_law : law of the baseline.
     corrects : measurements that it corrects; older files lack it.
-    use : what the file is for, in a sentence.
+    use : purpose of the file, in a sentence.
     effects : effects that were found.
-    covariance : of their parameters.
+    covariance : covariance of their parameters.
     gain : held-out scores; None if there are none.
     """
 

@@ -61,7 +61,7 @@ def parse(text: bytes, path: Path, model: type[M]) -> M:
     text : bytes
         Content of the file.
     path : Path
-        For messages.
+        File that messages name.
     model : type
         pydantic model.
 

@@ -110,7 +110,7 @@ class Capture:
     Attributes
     ----------
     time : float
-        After the beam's release [s].
+        Time after the beam's release [s].
     outline : TracedOutline, optional
     photo : Path, optional
     checkerboard : Checkerboard, optional
@@ -134,11 +134,11 @@ class Marker:
     ----------
     name : str
     position : tuple
-        In the unloaded pose [m].
+        Position in the unloaded pose [m].
     time : array, shape (t,)
         [s]
     displacement : array, shape (t, 3)
-        From that position [m].
+        Displacement from that position [m].
     """
 
     name: str

@@ -27,7 +27,7 @@ class Polished:
     u : array, shape (n,)
     cost : float
     residuals, jacobian : array, shape (m,), (m, n)
-        At u, the prior's rows last.
+        Whitened residuals and their Jacobian at u, the prior's rows last.
     converged : bool
         The last full step would have gained less than the tolerance.
     message : str

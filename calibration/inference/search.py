@@ -77,7 +77,7 @@ class CmaOptions:
     tolerance : float
         The search stops when the best costs of the last generations agree to this [chi-square].
     restarts : int
-        With twice the population each.
+        Number of restarts, with twice the population each.
     """
 
     seed: int = 1

@@ -174,7 +174,7 @@ def between_specimens(
     known : Identification
     parametrisation : Parametrisation
     end : Polished
-        With m residuals and their Jacobian.
+        Result of the polish, with m residuals and their Jacobian.
     specimens : sequence of str, length m
         Specimen of each residual; "" for the prior's, and where there is none.
     """

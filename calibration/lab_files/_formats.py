@@ -18,7 +18,7 @@ class Importer:
     Attributes
     ----------
     name : str
-        In answers files and messages.
+        Name in answers files and messages.
     about : str
         The layout in a sentence.
     recognises : callable

@@ -96,7 +96,7 @@ class LabTest:
         ----------
         column : Column
         decimals : {"point", "comma"}, optional
-            Where the lab states it.
+            Decimal separator, if the lab states it.
 
         Raises
         ------
@@ -239,7 +239,7 @@ def table(
     name, parameters, sheet : optional
         As in `LabTest`.
     header_line : int, optional
-        For messages.
+        Number of the header's line, for messages.
     skip : int
         Cells before the first column of each row.
 

@@ -26,7 +26,8 @@ _THOUSANDS_COMMA = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d+)?")  # 1.234,5 
 class Row:
     """A line of a file, or a row of a sheet, counted from 1.
 
-    cells : of a sheet; a line is split later. percent : indices of those that the workbook shows in percent.
+    cells : cells of a sheet; a line is split later.
+    percent : indices of the cells that the workbook shows in percent.
     """
 
     number: int

@@ -42,7 +42,7 @@ class Extra:
 
     Attributes
     ----------
-    name : of the coordinate.
+    name : name of the coordinate.
     sd, centre : standard deviation and mean of its normal prior.
     bounds : the model clips the coordinate to this interval.
     """

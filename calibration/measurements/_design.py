@@ -22,7 +22,7 @@ class Test(Generic[RecordT, TrialT]):
 
     Attributes
     ----------
-    name : of the test.
+    name : name of the test.
     sentence : instruction for the lab.
     trials : function from a specimen's records to its new trials; empty if the test cannot be done.
     """
@@ -43,7 +43,7 @@ class Gauge:
 
     Attributes
     ----------
-    name : of the measurement.
+    name : name of the measurement.
     sentence : instruction for the lab.
     sds : standard deviation of the measured amplitude [SI], by effect.
     """

@@ -149,7 +149,7 @@ def build(
 ) -> MeasurementModel:
     """Build the model of an experiment's measurements of a kind.
 
-    baseline : of a law that is fitted or predicted from; None for the kind's own.
+    baseline : baseline of a law that is fitted or predicted from; None for the kind's own.
     options : see `Kind.takes`; options that the kind does not take are ignored.
     """
     own = {n: v for n, v in options.items() if n in kind.takes}

@@ -33,7 +33,7 @@ class Record(Protocol):
 
     Attributes
     ----------
-    name, material, specimen : of the trial.
+    name, material, specimen : names of the trial, its material and its specimen.
     groups : label at each level to which effects may be restricted.
     ranges : measured range of each quantity (low, high), by its name in files, which includes the unit.
     """

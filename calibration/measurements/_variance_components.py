@@ -31,7 +31,7 @@ class Curve:
 
     Attributes
     ----------
-    name, material, specimen : of the record.
+    name, material, specimen : names of the record, its material and its specimen.
     test : key that repeats of one test share; None for a record that is not a repeat.
     x : driven quantity, in the order of the record, shape (k,).
     branch : number of the stroke of each point, shape (k,): loading and unloading are compared separately.

@@ -31,7 +31,7 @@ class Coordinate:
     Attributes
     ----------
     name, unit : str
-        In cards and reports; the unit is that of the value, not of its logarithm.
+        Name in cards and reports, and unit of the value, not of its logarithm.
     log : bool
         The optimiser moves the natural logarithm of the value.
     low, high : float
@@ -51,7 +51,7 @@ class Coordinate:
     unheld_sd : float, optional
         Standard deviation of the prior that a held coordinate had.
     start_per_shear : float, optional
-        In place of `start`: value where a search begins, over the guessed shear modulus.
+        Value where a search begins, over the guessed shear modulus, in place of `start`.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Parametrisation:
     law : str
         Name in `tisim.laws`.
     label : str
-        In tables ("ogden-2" for two terms).
+        Name in tables ("ogden-2" for two terms).
     coordinates : tuple of Coordinate
     assemble : callable
         Values by coordinate name -> the law's parameters.

@@ -44,7 +44,7 @@ class PartCoordinates:
     spec : str
         As it is asked for ("prony:2"); empty where it is held.
     label : str
-        In tables and file names ("prony-2").
+        Name in tables and file names ("prony-2").
     field : str
         Field of `tisim.Material` ("viscosity", "softening").
     window : ProtocolWindow

@@ -202,7 +202,7 @@ class View:
     ----------
     camera : Camera
     rotation, shift : array, shape (3, 3), (3,)
-        From OpenCV's board frame (x, down, away) to the camera's [m].
+        Map from OpenCV's board frame (x, down, away) to the camera's [m].
     """
 
     camera: Camera

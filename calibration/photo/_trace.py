@@ -155,7 +155,7 @@ class Trace:
     Attributes
     ----------
     outline : TracedOutline
-        In the specimen's frame, with its uncertainty.
+        Outline in the specimen's frame, with its uncertainty.
     metres_per_pixel : float
         Scale at the specimen.
     tilt : float

@@ -93,7 +93,7 @@ _FITTED_TO = re.compile(
 class FittedTo(_Lenient):
     """Experiment that a card was fitted to, and kinds of measurement; all of it where none are stated.
 
-    status, why : of a fit that is no calibration (lack of fit, not converged).
+    status, why : status and message of a fit that is no calibration (lack of fit, not converged).
     """
 
     experiment: str
@@ -154,12 +154,12 @@ class CardModel:
 
     Attributes
     ----------
-    law : in the search coordinates of the fit that the card states; else its shear modulus, and the relative
-        size of each part whose sd is known.
+    law : law in the search coordinates of the fit that the card states; else its shear modulus, and the
+        relative size of each part whose sd is known.
     u : the card's point.
-    covariance : of u.
+    covariance : covariance of u.
     model_error : relative, of the modulus.
-    notes : what the card does not state, a sentence each.
+    notes : sentences on what the card does not state.
     ranges : between what its effects were measured, by the quantity's name in files.
     """
 

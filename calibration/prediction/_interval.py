@@ -35,7 +35,7 @@ class Calibrated:
 
     Attributes
     ----------
-    label : in tables ("baseline", "rate-dependence").
+    label : name in tables ("baseline", "rate-dependence").
     state : coordinates of the measurement model, and amplitudes of effects.
     candidates : effects, in the order of the covariance.
     parameters : covariance of coordinates and amplitudes, shape (n + c, n + c).
@@ -60,7 +60,7 @@ class PredictedRecord:
     Attributes
     ----------
     value : predicted [SI], shape (p,).
-    sds : by source [SI], each (p,).
+    sds : standard deviations by source [SI], shape (p,) each.
     """
 
     value: Array
@@ -78,9 +78,9 @@ class Record:
 
     Attributes
     ----------
-    name, trial, material, specimen, kind : of the record.
+    name, trial, material, specimen, kind : names of the record, and of what it belongs to.
     shown : axes and measured values; `used` : points of it that are compared, shape (p,).
-    predicted : by model.
+    predicted : prediction by model.
     """
 
     name: str

@@ -50,12 +50,12 @@ class Prediction:
     Attributes
     ----------
     experiment : whose trials were predicted.
-    source : what predicts, for people ("cards in DIR", "a fit to a, b").
-    labels : of the models that predict, by name: baseline and extended, or one of them.
+    source : description of the source of the models ("cards in DIR", "a fit to a, b").
+    labels : labels of the models that predict, by name: baseline and extended, or one of them.
     model_errors : relative, by model and material.
     shear_moduli : [Pa], by model and material.
     records : measured and predicted.
-    notes : what a reader must know, a sentence each.
+    notes : sentences for the reader.
     seconds : that it took.
     fitted : True if the models were fitted to this very experiment.
     """
@@ -150,7 +150,7 @@ def from_cards(
     baseline : cards that stand beside them in place of the baseline that they state.
     domain : the kind of measurement, where not all are wanted.
     specimen_scatter : sd of ln G of a specimen that is named; that of a careful lab where left out.
-    source : what predicts, for people.
+    source : description of the source of the models.
     unseen : True where the cards were fitted to other trials of this experiment.
 
     Raises

@@ -41,7 +41,7 @@ class Score(_Strict):
 
     Attributes
     ----------
-    rms : of predicted less measured.
+    rms : root mean square of predicted minus measured.
     coverage : fraction of the points that lie within their intervals.
     sd : root mean square of the interval's standard deviation, by source: parameters, specimens, noise, model
         error, choice.
@@ -58,9 +58,9 @@ class Entry(_Strict):
     Attributes
     ----------
     points : measured points that are compared.
-    unit : of rms and sd.
-    rms_noise : what rms would be of noise alone.
-    models : by name.
+    unit : unit of rms and sd.
+    rms_noise : expected rms of noise alone.
+    models : scores of the models by name.
     skill : (rms_base^2 - rms_ext^2) / (rms_base^2 - rms_noise^2); null without both models, or where the
         baseline predicts as well as noise allows.
     """
@@ -77,9 +77,9 @@ class RecordEntry(Entry):
 
     Attributes
     ----------
-    axis : what x is, with its unit. quantity : what is compared.
+    axis : label of x, with its unit. quantity : compared quantity.
     measured : 0 where what is compared is a distance between simulated and measured.
-    curves : by model.
+    curves : predictions by model.
     """
 
     record: str
@@ -113,11 +113,11 @@ class PredictionFile(_Strict):
 
     Attributes
     ----------
-    source : what predicts.
-    experiment, experiment_sha256 : of the trials that are predicted.
-    level : of the intervals.
-    models : by name. kinds : scores by kind of measurement. records : each by itself.
-    notes : what a reader must know.
+    source : description of the source of the models.
+    experiment, experiment_sha256 : experiment of the trials that are predicted.
+    level : level of the intervals.
+    models : labels by name. kinds : scores by kind of measurement. records : the records.
+    notes : sentences for the reader.
     """
 
     format: Literal[1] = 1

@@ -58,7 +58,7 @@ def from_trials(
     ----------
     fitted, wanted : its trials to fit, and those to predict.
     domain : the kind of measurement of the fit, where it is not plain.
-    law : of the diagnosis' baseline, as `calibration.diagnose` takes it.
+    law : law of the diagnosis' baseline, as `calibration.diagnose` takes it.
     extend : effects of the extension, in place of a search for them.
 
     Raises

@@ -30,7 +30,7 @@ class HeldOut:
     ----------
     trial : str
     shear_modulus : float
-        From the other trials [Pa].
+        Shear modulus from the other trials [Pa].
     rms_raw, rms : float
         rms distance of its points before and after its photographs' registration is taken out [m].
     reduced_chi2 : float

@@ -52,7 +52,7 @@ class CardParts:
     parts : mapping
         Parts by the field of `tisim.Material`.
     path : str
-        Where it was read, for the command that makes a fit again.
+        File that it was read from, for the command that repeats a fit.
     """
 
     name: str
@@ -186,7 +186,7 @@ def with_parts(
 ) -> Parametrisation:
     """The law with parts that are fitted to a material's tests of all kinds; each spec says all.
 
-    card : of the material, whose parts are held, or begin the search.
+    card : card of the material, whose parts are held, or begin the search.
     """
     held = {} if card is None else card.held(specs)
     if not specs and not held:

@@ -45,7 +45,7 @@ class Task:
         Number of terms of a series law.
     options : FitOptions
     folder : Path
-        Where the fit is kept while it runs and when it has ended.
+        Folder of the fit, while it runs and after its end.
     objective : str
         "likelihood" or "dice".
     setup : Setup, optional

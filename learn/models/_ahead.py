@@ -51,12 +51,12 @@ def blocked(
 
     Parameters
     ----------
-    offset : from first contact to each point [m], shape (n, b, 3), float64.
-    normals : of the points, shape (n, 3), float64.
+    offset : vector from first contact to each point [m], shape (n, b, 3), float64.
+    normals : normals of the points, shape (n, 3), float64.
     log_area : logarithms of the points' areas, shape (n,), float64.
     layers : rigid fractions under the points, shape (n, b, LAYERS + 1).
     push : unit directions, shape (b, 3), float64.
-    height : of the columns [m].
+    height : height of the columns [m].
 
     Returns
     -------
@@ -142,7 +142,7 @@ def of_path(blocked: Tensor, depth: Tensor, radius: float) -> list[Tensor]:
     ----------
     blocked : shape (len(WIDTHS), ..., len(WAY)).
     depth : travel since first contact in indenter radii, shape (...).
-    radius : of the indenter [m].
+    radius : radius of the indenter [m].
     """
     way, beyond = (torch.as_tensor(v).to(blocked) for v in (_WAY32, _BEYOND32))
     at = torch.clip((depth * radius)[..., None] + beyond, WAY[0], WAY[-1])

@@ -22,7 +22,7 @@ def triangles(facets: NDArray[np.int32]) -> NDArray[np.int32]:
     Parameters
     ----------
     facets : ndarray of int, shape (f, nodes per facet)
-        Of 3, 4, 6 or 8 nodes each, outward.
+        Facets of 3, 4, 6 or 8 nodes each, outward.
 
     Returns
     -------

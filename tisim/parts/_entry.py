@@ -97,7 +97,7 @@ def decode(field: str, entry: object) -> Part:
     Parameters
     ----------
     field : str
-        Of `FIELDS`: only its kinds of parts are accepted.
+        One of `FIELDS`: only its kinds of parts are accepted.
     entry : mapping
         Key "kind" and the parameters, each with or without its unit, lists as lists or tuples.
 

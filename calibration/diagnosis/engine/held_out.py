@@ -42,7 +42,7 @@ class HeldOut:
     folds : number of folds.
     note : why nothing was held out, or which folds were not predicted.
     parts : prediction of each fold.
-    amplitudes : of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
+    amplitudes : amplitudes of the extension's candidates, fitted without each fold, shape (folds, c) [SI].
     acts : True for each fold in which some effect, at its fitted amplitude, is visible.
     within : True if folds divide single records, so that errors common to a record are in the training set.
     """

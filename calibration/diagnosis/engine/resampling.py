@@ -29,7 +29,7 @@ class Groups:
 
     Attributes
     ----------
-    over : what the groups are, for people ("specimens", "tests", "fifths of each record").
+    over : description of the groups ("specimens", "tests", "fifths of each record").
     of_row : group of each row of residuals, shape (m,); -1 for rows of the prior, which are never dropped.
     names : names of the groups.
     """

@@ -37,7 +37,7 @@ class Searched:
     ----------
     model : measurements with effects that were searched.
     finding : result of the search.
-    noise : what is known about the noise.
+    noise : knowledge of the noise.
     rules : significance levels and limits that were used.
     begun : start of the search on the monotonic clock [s].
     """

@@ -45,8 +45,8 @@ class Misfit:
 
     Attributes
     ----------
-    value : of the fit.
-    drawn : of the bootstrap replicates, shape (b,).
+    value : value of the fit.
+    drawn : values of the bootstrap replicates, shape (b,).
     """
 
     value: float

@@ -148,7 +148,7 @@ class Diagnosis:
         fractions.
     remainder : unexplained misfit; None if the baseline leaves only noise.
     model_error : the unexplained misfit as a model error; None unless more than noise is left.
-    noise : what is known about the noise.
+    noise : knowledge of the noise.
     """
 
     finding: Finding

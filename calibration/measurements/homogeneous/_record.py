@@ -44,7 +44,7 @@ class Record:
     Attributes
     ----------
     name : name of the trial.
-    material, specimen : of the trial; the specimen is the material's name if the trial names none.
+    material, specimen : names of both; that of the specimen is the material's if the trial names none.
     mode : mode of loading.
     stretch : stretch in the driven direction; 1 + gamma in simple shear.
     stress, sd : nominal stress and its standard deviation [Pa].

@@ -42,7 +42,7 @@ class ShapeCurve:
     Attributes
     ----------
     base : curve at x0.
-    derivatives : of ln F by the shape coordinates, at the depths of `base`, shape (n, f).
+    derivatives : derivatives of ln F by the shape coordinates, at the depths of `base`, shape (n, f).
     reached : depth that all of its simulations reached [m].
     short : status of the simulation that ended first, as in " (bulk_ratio moved): status"; "" if all were
         complete.

@@ -53,7 +53,7 @@ class Record:
     Attributes
     ----------
     name : name of the trial.
-    material, specimen : of the trial; the specimen is the material's name if the trial names none.
+    material, specimen : names of both; that of the specimen is the material's if the trial names none.
     blocks : names of its block, by size, and by material and size.
     geometry : block, indenter and contact point.
     time : [s].

@@ -27,7 +27,7 @@ class Photographs:
 
     Attributes
     ----------
-    name : of the experiment.
+    name : name of the experiment.
     sentence : instruction for the lab.
     trial : function from a trial to the changed trial; None if it cannot be done.
     pose : function of (scene, trial) that transforms the specimen's imperfections in the scene.

@@ -59,7 +59,7 @@ class SettledModel(MeasurementModel):
     Parameters
     ----------
     experiment : experiment with beams with markers; other trials are ignored.
-    baseline : of one law.
+    baseline : baseline of one law.
     workers : number of processes for FEM; None for all cores.
 
     Raises

@@ -60,5 +60,5 @@ def test_refusals():
     t, z = made()
     with pytest.raises(ValueError, match=r"ten samples between 0.15 and 0.2 s, got"):
         ringdown(t, z, last=0.2)
-    with pytest.raises(ValueError, match="that swings"):
+    with pytest.raises(ValueError, match="that oscillates"):
         ringdown(t, np.zeros_like(t))

@@ -37,7 +37,7 @@ class FirstTouch:
     ----------
     scene : Poke
     mesh : Mesh
-        With a facet set "top".
+        Mesh with a facet set "top".
     facets : ndarray of int, shape (f, a)
         Facets of the top that the rod can touch.
 
