@@ -72,7 +72,8 @@ class Exported:
 
     @property
     def within(self) -> bool:
-        """True if the program that was run gave the expected beam; True where none was run."""
+        """True if the program that was run gave the expected beam, or none was run; False where none was
+        expected."""
         return self.checked is None or self.checked.from_expected <= self.checked.limit
 
 
@@ -235,7 +236,10 @@ def _job(
     if "fibres" in keeps:
         scene = replace(scene, beam=replace(scene.beam, material=plain))
         found = solve(scene)
-    prediction = predict(scene, found, job.form, element_error=target.element_share(refinement))
+    prediction = predict(
+        scene, found, job.form, replaced=conversion.how == "fit",
+        element_error=target.element_share(refinement),
+    )  # fmt: skip
     return replace(job, scene=scene, prediction=prediction), notes, high
 
 
