@@ -18,6 +18,7 @@ from calibration.export._response import (
 )
 from tisim import parts
 
+SIGNATURE = "SI units. Written by `python -m calibration.export`."  # by which a folder is known as an export
 TITLES = {
     "polynomial": "polynomial in the isochoric invariants",
     "ogden": "Ogden",
@@ -143,7 +144,7 @@ def constants(form: Form) -> str:
 
 def readme(job: Job, target: Target, written: Written, lost: list[str], notes: list[str]) -> str:
     """The text of README.md."""
-    out = [f"# {job.name} for {target.title}", "", "SI units. Written by `python -m calibration.export`.", ""]
+    out = [f"# {job.name} for {target.title}", "", SIGNATURE, ""]
     out += [f"- `{p.name}`: {what}" for p, what in written.files.items()]
     if written.run:
         out += ["", f"Run the beam: `{written.run}`"]

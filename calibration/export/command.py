@@ -57,7 +57,9 @@ def main(
     check: Annotated[
         bool, typer.Option(help="Run the program on the beam and compare: calculix, mujoco, newton.")
     ] = False,
-    overwrite: Annotated[bool, typer.Option(help="Write into a folder that is not empty.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option(help="Replace an earlier export in the folder; other files stay.")
+    ] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """Export a material card and its beam to another program, with what is lost and how much."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +18,7 @@ import calibration.export as export
 import tisim
 from calibration.export import Form, Job, Target, Written
 from calibration.export.command import app
+from calibration.export.targets import calculix
 
 ROOT = Path(__file__).resolve().parents[2]
 CARDS = ROOT / "datasets" / "materials"
@@ -110,3 +113,59 @@ def test_a_beam_that_was_not_expected_is_not_beyond(
     out, _ = ends([*words, "--out", str(tmp_path / "out"), "--check"], 1)
     assert "BEYOND" not in out
     assert "not compared with an expected one, which tisim did not find, but is" in out
+
+
+def stand_in(folder: Path, script: str) -> str:
+    """A PATH on which `ccx` is a script."""
+    folder.mkdir()
+    program = folder / "ccx"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    return f"{folder}{os.pathsep}{os.environ['PATH']}"
+
+
+def test_a_program_that_does_not_end_is_stopped_with_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PATH", stand_in(tmp_path / "bin", "echo increment 1; exec sleep 60"))
+    monkeypatch.setattr(calculix, "SECONDS", 1.0)
+    out = tmp_path / "out"
+    words = [str(CARDS / "S0.yaml"), "--to", "calculix", "--out", str(out), *SHORT, "--check"]
+    _, sentence = ends(words, 2)
+    log = out / "ccx.log"
+    assert sentence == f"error: --check: ccx did not solve the beam within 1 s and was stopped: see {log}"
+    assert log.read_text() == "increment 1\n"
+
+
+def test_a_new_export_leaves_no_file_of_an_earlier_one(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Another program's files, the beam that is not asked for again, and results of its run; others stay."""
+    results = " ".join(shlex.quote(x) for x in calculix.TARGET.results if x != "ccx.log")
+    monkeypatch.setenv("PATH", stand_in(tmp_path / "bin", f"touch {results}; exit 1"))
+    out, mine = tmp_path / "out", tmp_path / "out" / "mine.txt"
+    first = [str(CARDS / "S0.yaml"), "--out", str(out)]
+    ends([*first, "--to", "calculix", *SHORT, "--check"], 2)
+    mine.write_text("mine")
+    names = {"README.md", "material.inp", "beam.inp", "mine.txt", *calculix.TARGET.results}
+    assert {p.name for p in out.iterdir()} == names
+    ends([*first, "--to", "calculix", "--no-scene", "--overwrite"], 0)
+    assert {p.name for p in out.iterdir()} == {"README.md", "material.inp", "mine.txt"}
+    ends([*first, "--to", "febio", "--no-scene", "--overwrite"], 0)
+    assert {p.name for p in out.iterdir()} == {"README.md", "material.feb", "mine.txt"}
+    (out / "README.md").write_text("- `mine.txt`: a page of my own\n")
+    ends([*first, "--to", "sofa", "--no-scene", "--overwrite"], 0)
+    assert {p.name for p in out.iterdir()} == {"README.md", "material.feb", "material.json", "mine.txt"}
+
+
+@pytest.mark.parametrize(("r", "kept"), [(1.0, False), (1.0 + 1e-12, False), (1.5, True)])
+def test_abaqus_takes_softening_by_r_above_one(r: float, kept: bool, tmp_path: Path) -> None:
+    """tisim also has r = 1, with which unloaded tissue has no stress at all; as it would be written."""
+    softening = {"kind": "ogden-roxburgh", "r": r, "m_J_per_m3": 500.0}
+    words = [str(card(tmp_path, softening=softening)), "--to", "abaqus", "--no-scene"]
+    out, _ = ends([*words, "--out", str(tmp_path / "a")], 0)
+    deck = (tmp_path / "a" / "material.inp").read_text()
+    assert ("*MULLINS EFFECT\n1.5, 500, 0" in deck) == kept
+    assert ("*MULLINS" in deck) == kept
+    assert ("Ogden-Roxburgh softening is left out" in out) != kept
+    assert ("Abaqus takes an r of Ogden-Roxburgh softening above 1 only" in out) != kept

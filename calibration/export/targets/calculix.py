@@ -111,4 +111,5 @@ TARGET = Target(
     # C3D10 has no pressure of its own: 0.5 to 2.7 % too stiff on the beams of docs/how-to/export.md
     element_error=0.04,
     check=check,
+    results=("ccx.log", "spooles.out", *(f"beam.{x}" for x in ("12d", "cvg", "dat", "frd", "sta"))),
 )
