@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import secrets
+import unicodedata
 from pathlib import Path
 
 _PART = re.compile(r"(\.[0-9a-f]{8})?\.part\Z")  # earlier versions had .part alone
@@ -38,6 +39,11 @@ def write_whole(path: Path, content: str | bytes) -> Path:
             part.unlink()
         raise
     return path
+
+
+def on_any_disk(name: str) -> str:
+    """The name without letter case and Unicode form: on some disks, names equal in this are one file."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
 def whole_name(name: str) -> str:
