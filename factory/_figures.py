@@ -16,6 +16,7 @@ from PIL import Image
 from factory._sampling import grid_points
 from factory.plan import Plan
 from factory.reader import Dataset, PokeData
+from tisim.io.whole import whole_file
 
 if TYPE_CHECKING:
     from factory._report import Trace
@@ -118,7 +119,8 @@ def draw_poke(poke: PokeData, data: Dataset, path: Path) -> None:
         axes.plot(across, np.linalg.norm(force, axis=1), style, ms=4, label=name)
     axes.set(xlabel=label, ylabel="force [N]")
     axes.legend()
-    figure.savefig(path, format="png")
+    with whole_file(path) as part:
+        figure.savefig(part, format="png")
 
 
 def _deepest(poke: PokeData) -> int:
