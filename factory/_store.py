@@ -274,6 +274,11 @@ def _holds(name: str, arrays: Mapping[str, range | None]) -> bool:
     return shards is None or parts[0] != "c" or not parts[1].isdecimal() or int(parts[1]) in shards
 
 
+def manifest_digest(store: Path) -> str:
+    """sha256 of a store's manifest, which stands for all of its files; "" without one."""
+    return _sha256(store / MANIFEST) or ""
+
+
 def _listed(store: Path | zipfile.Path) -> dict[str, object] | None:
     """Digests of the manifest by file; None if it cannot be read."""
     try:
