@@ -240,7 +240,7 @@ def validate(raw: dict[str, Any]) -> Answers:
     InputError
         One does not fit.
     """
-    data = as_tuples(raw)
+    data: Any = as_tuples(raw)
     try:
         return Answers.model_validate(data)
     except ValidationError as error:
