@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from calibration._files import on_any_disk
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.fit_request import FitRequest
@@ -254,7 +255,7 @@ def _check_names(tasks: Sequence[Task]) -> None:
     """Refuse fits of two materials that would have one file: "gel" and "gel-stable" of two laws."""
     made: dict[str, Task] = {}
     for task in tasks:
-        other = made.setdefault(task.name, task)
+        other = made.setdefault(on_any_disk(task.name), task)
         if other is not task and other.material != task.material:
             raise InputError(
                 f"materials {other.material} and {task.material}: expected names that tell their fits apart,"

@@ -44,7 +44,11 @@ def main(
         Path | None, typer.Option(help="Folder to write. Default: EXPERIMENT's name with -traced, here.")
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume/--overwrite", help="Keep what is already traced, or trace all again.")
+        bool,
+        typer.Option(
+            "--resume/--overwrite",
+            help="Keep what is already traced, or trace all again, also over another experiment.",
+        ),
     ] = True,
     skip_bad: Annotated[
         bool,

@@ -16,6 +16,7 @@ from PIL import Image
 from factory._sampling import grid_points
 from factory.plan import Plan
 from factory.reader import Dataset, PokeData
+from tisim.io.whole import whole_file
 
 if TYPE_CHECKING:
     from factory._report import Trace
@@ -31,12 +32,24 @@ class NotOursError(Exception):
     """A picture of another origin has the name of a preview."""
 
 
-def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
+def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path, of: str = "") -> None:
     """Write the preview, whole or not at all: contact points, force against depth, the top at its deepest.
 
-    NotOursError if the path is a picture of another origin, which stays.
+    Parameters
+    ----------
+    plan : Plan
+    traces : dict of int to Trace
+        By index of the poke.
+    path : Path
+    of : str
+        Digest of the store's manifest, which the file states (`preview_of`); "" while there is no store.
+
+    Raises
+    ------
+    NotOursError
+        If the path is a picture of another origin, which stays.
     """
-    if path.exists() and not _is_preview(path):
+    if path.exists() and preview_of(path) is None:
         raise NotOursError(f"no preview picture: {path.name} is another picture, which stays")
     figure = Figure(figsize=(13, 4.2), layout="constrained", dpi=110)
     sites, curves, top = figure.subplots(1, 3)
@@ -52,7 +65,7 @@ def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
     _top(plan, traces, top, figure)
     temporary = path.with_name(f".{path.name}.tmp")
     try:
-        figure.savefig(temporary, format="png", metadata={"Title": _TITLE})
+        figure.savefig(temporary, format="png", metadata={"Title": _TITLE, "Description": of})
         temporary.replace(path)
     except OSError:
         with contextlib.suppress(OSError):
@@ -60,12 +73,13 @@ def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path) -> None:
         raise
 
 
-def _is_preview(path: Path) -> bool:
+def preview_of(path: Path) -> str | None:
+    """Digest of the manifest of the store that a preview shows; None for what is no preview."""
     try:
         with Image.open(path) as picture:
-            return picture.info.get("Title") == _TITLE
+            return str(picture.info.get("Description", "")) if picture.info.get("Title") == _TITLE else None
     except (OSError, ValueError):  # what is not a picture was not drawn here
-        return False
+        return None
 
 
 def _sites(plan: Plan, traces: dict[int, Trace], axes: Any) -> None:
@@ -118,7 +132,8 @@ def draw_poke(poke: PokeData, data: Dataset, path: Path) -> None:
         axes.plot(across, np.linalg.norm(force, axis=1), style, ms=4, label=name)
     axes.set(xlabel=label, ylabel="force [N]")
     axes.legend()
-    figure.savefig(path, format="png")
+    with whole_file(path) as part:
+        figure.savefig(part, format="png")
 
 
 def _deepest(poke: PokeData) -> int:

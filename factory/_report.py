@@ -5,11 +5,11 @@ from __future__ import annotations
 import io
 import logging
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +21,16 @@ from factory._build import BuildProgress, Built, check_continues, is_built
 from factory._cli import duration, sides_text, size_text
 from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
-from factory._errors import describe_os_error
+from factory._errors import InputError, describe_os_error
 from factory._parts import part_entries
 from factory._staging import Staging
-from factory._store import read_ledger
+from factory._store import manifest_digest, read_ledger
 from factory.plan import Plan
 from tisim.problems._stops import shortest_time
 from tisim.problems.indentation.steps import LARGEST_STEP
+
+if TYPE_CHECKING:
+    from factory.reader import Dataset
 
 log = logging.getLogger(__name__)
 _LINE_SECONDS = 20.0  # between lines where the output is no terminal
@@ -141,6 +144,21 @@ class Trace:
     depth: NDArray[np.float64]
     force: NDArray[np.float64]
     grid: NDArray[np.float32] | None
+
+
+def traces_of(data: Dataset) -> dict[int, Trace]:
+    """Pokes of a store by index; only that of the deepest one has its grid, since no other is drawn."""
+    found = {}
+    for index in map(int, np.flatnonzero(data.table["done"])):
+        frames = data.rows(index, "frame")
+        force = np.linalg.norm(data.table["rod_force"][frames], axis=1)
+        found[index] = Trace(depth=data.table["depth"][frames], force=force, grid=None)
+    moved = [index for index, trace in found.items() if len(trace.depth)]
+    if moved:
+        deepest = max(moved, key=lambda i: (found[i].depth.max(), -i))
+        row = data.rows(deepest, "frame").start + int(np.argmax(found[deepest].depth))
+        found[deepest] = replace(found[deepest], grid=data.read("grid_displacement", row))
+    return found
 
 
 def preview_path(target: Path) -> Path:
@@ -291,9 +309,14 @@ class Screen:
             self._picture = time.monotonic()
 
     def finish(self, built: Built) -> None:
-        """Draw the last preview and print a summary of the build."""
+        """Draw the last preview, if that beside the store is not of it, and print a summary of the build."""
+        from factory._figures import preview_of
+
+        of = manifest_digest(self._target)
+        if not self._traces and of and preview_of(preview_path(self._target)) != of:
+            self._read_store()  # of a build that was killed when the store was in place
         if self._traces or not preview_path(self._target).exists():
-            self._draw()
+            self._draw(of)
         new = f"{built.simulated} simulated now"
         if not built.simulated:
             new = "none simulated with success now" if built.errors else "nothing was left to simulate"
@@ -322,11 +345,19 @@ class Screen:
                 grid=deepest,
             )
 
-    def _draw(self) -> None:
+    def _read_store(self) -> None:
+        from factory.reader import open_dataset
+
+        try:
+            self._traces = traces_of(open_dataset(self._target))
+        except InputError as error:  # a build must not fail for its preview
+            log.warning("no preview picture: %s.", error)
+
+    def _draw(self, of: str = "") -> None:
         from factory._figures import NotOursError, draw_preview
 
         try:
-            draw_preview(self._plan, self._traces, preview_path(self._target))
+            draw_preview(self._plan, self._traces, preview_path(self._target), of)
         except NotOursError as error:
             if not self._foreign:  # once
                 log.warning("%s.", error)

@@ -12,7 +12,7 @@ import math
 import os
 import stat
 import zipfile
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Self
 
@@ -244,8 +244,14 @@ def missing_files(store: Path | zipfile.Path) -> list[str]:
     return sorted(name for name in listed if name not in found)
 
 
-def altered_files(store: Path | zipfile.Path, arrays: Collection[str]) -> list[str]:
-    """Files of these arrays whose sha256 is not the manifest's.
+def altered_files(store: Path | zipfile.Path, arrays: Mapping[str, range | None]) -> list[str]:
+    """Files whose sha256 is not the manifest's: of these arrays, and the root's metadata.
+
+    Parameters
+    ----------
+    store : Path or zipfile.Path
+    arrays : mapping of str to range or None
+        Numbers of the shards along the first dimension to look at; None for all.
 
     Raises
     ------
@@ -255,8 +261,22 @@ def altered_files(store: Path | zipfile.Path, arrays: Collection[str]) -> list[s
     listed = _listed(store)
     if listed is None:
         raise DamagedError(f"{store / MANIFEST}: missing or damaged, the dataset cannot be checked")
-    mine = (name for name in sorted(listed) if name.partition("/")[0] in arrays and _stays_inside(name))
+    mine = (name for name in sorted(listed) if _holds(name, arrays) and _stays_inside(name))
     return [name for name in mine if _sha256(store / name) != listed[name]]
+
+
+def _holds(name: str, arrays: Mapping[str, range | None]) -> bool:
+    """True for metadata and those shards of the arrays; Zarr names a shard ARRAY/c/I/J/..."""
+    array, _, rest = name.partition("/")
+    if not rest or array not in arrays:
+        return name == "zarr.json"
+    shards, parts = arrays[array], rest.split("/")
+    return shards is None or parts[0] != "c" or not parts[1].isdecimal() or int(parts[1]) in shards
+
+
+def manifest_digest(store: Path) -> str:
+    """sha256 of a store's manifest, which stands for all of its files; "" without one."""
+    return _sha256(store / MANIFEST) or ""
 
 
 def _listed(store: Path | zipfile.Path) -> dict[str, object] | None:

@@ -174,7 +174,7 @@ def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console
     if not 0 <= index < data.n_pokes:
         raise InputError(f"--poke {index}: expected 0 to {data.n_pokes - 1}")
     poke = data.poke(index)
-    data.check_sums()
+    data.check_sums(index)
     table = Table(title=f"Poke {index} of {data.path}", show_header=False)
     table.add_row("shape, material level", f"{poke.shape}, {poke.level}")
     table.add_row("block", f"{sides_text([[1e3 * side for side in poke.block]])} mm")

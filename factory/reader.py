@@ -215,14 +215,35 @@ class Dataset:
         start = int(self.table[f"{counted}_start"][index])
         return slice(start, start + int(self.table[f"{counted}_count"][index]))
 
-    def check_sums(self) -> None:
-        """Raise DamagedError if a file of the tables differs from the manifest.
+    def rows_of(self, index: int) -> dict[str, slice]:
+        """Rows of a poke in each of the large arrays."""
+        geometry = int(self.table["poke_geometry"][index])
+        return {
+            "profile": slice(geometry, geometry + 1),
+            "grid_displacement": self.rows(index, "frame"),
+            "surface_displacement": self.rows(index, "value"),
+            "surface_rest": self.rows(index, "node"),
+            "surface_triangle": self.rows(index, "triangle"),
+        }
 
-        A flipped bit may decode to another value without an error.
+    def check_sums(self, poke: int | None = None) -> None:
+        """Raise DamagedError if a file of the tables, or of one poke in the large arrays, is altered.
+
+        A flipped bit may decode to another value without an error; sums are compared with the manifest.
         """
-        altered = altered_files(self.root, self.specs.keys() - _BIG)
+        arrays: dict[str, range | None] = dict.fromkeys(self.specs.keys() - _BIG)
+        altered = altered_files(self.root, arrays)
+        if not altered and poke is not None:
+            shards = {name: self._shards(name, rows) for name, rows in self.rows_of(poke).items()}
+            altered = altered_files(self.root, shards)
         if altered:
             raise DamagedError(f"{self.path / altered[0]}: its sha256 differs from the manifest")
+
+    def _shards(self, name: str, rows: slice) -> range:
+        """Numbers of an array's files that hold rows, along its first dimension."""
+        array = self.array(name)
+        size = int((array.shards or array.chunks)[0])
+        return range(rows.start // size, -(-rows.stop // size) if rows.stop > rows.start else 0)
 
     def check_rows(self) -> None:
         """Raise DamagedError if lengths of tables contradict the attributes or the tables' own counts."""
@@ -286,10 +307,10 @@ class Dataset:
         if not 0 <= index < self.n_pokes:
             raise InputError(f"poke {index}: expected 0 to {self.n_pokes - 1}")
         self.check_rows()
-        table, frames = self.table, self.rows(index, "frame")
+        table, frames, rows = self.table, self.rows(index, "frame"), self.rows_of(index)
         geometry = int(table["poke_geometry"][index])
-        rest = self.read("surface_rest", self.rows(index, "node"))
-        moved = self.read("surface_displacement", self.rows(index, "value"))
+        rest = self.read("surface_rest", rows["surface_rest"])
+        moved = self.read("surface_displacement", rows["surface_displacement"])
         depth = table["depth"][frames]
         if moved.shape != (len(depth) * len(rest), 3) or rest.shape[1:] != (3,):
             raise DamagedError(f"{self.path}: poke {index}: its surface and its frames do not match")
@@ -309,10 +330,10 @@ class Dataset:
             rod_tip=table["rod_tip"][frames],
             rod_force=table["rod_force"][frames],
             base_force=table["base_force"][frames],
-            grid=self.grid_rest(geometry) + self.read("grid_displacement", frames),
+            grid=self.grid_rest(geometry) + self.read("grid_displacement", rows["grid_displacement"]),
             surface=rest + moved.reshape(len(depth), len(rest), 3),
             surface_rest=rest,
-            triangles=self.read("surface_triangle", self.rows(index, "triangle")),
+            triangles=self.read("surface_triangle", rows["surface_triangle"]),
             profile=self.read("profile", geometry),
             **self._of_time(frames),
         )

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from calibration._files import on_any_disk
 from calibration.diagnosis._card_numbers import (
     Modulus,
     baseline_entry,
@@ -44,8 +45,9 @@ _BY = "by calibration.diagnose"  # in the provenance of cards of a diagnosis, an
 
 def check_names(materials: Collection[str]) -> None:
     """InputError if a material is named as the rig's card is."""
-    if Path(RIG).stem in materials:
-        raise InputError(f"material {Path(RIG).stem}: expected another name, since {RIG} is the rig's card")
+    for name in materials:
+        if on_any_disk(name) == Path(RIG).stem:
+            raise InputError(f"material {name}: expected another name, since {RIG} is the rig's card")
 
 
 def write_cards(folder: Path, diagnosis: Diagnosis, experiment: Experiment) -> list[Path]:

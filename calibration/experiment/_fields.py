@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Protocol
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
+
+from calibration._files import on_any_disk
 
 # beyond these a number is a slip of the unit, not a specimen
 _LONGEST_MM = 1e5
@@ -163,12 +165,30 @@ class Identified(Protocol):
 
 
 def different_ids(trials: Sequence[Identified]) -> None:
-    """Refuses two trials of one id."""
-    seen: set[str] = set()
-    for k, trial in enumerate(trials):
-        if trial.id in seen:
-            raise say("trials", f"expected different ids, trial #{k + 1} has the id {trial.id} again")
-        seen.add(trial.id)
+    """Refuses two trials of one id, or of ids that differ in letter case alone: they name files."""
+    seen: dict[str, str] = {}
+    for k, trial in enumerate(trials, 1):
+        other = seen.setdefault(on_any_disk(trial.id), trial.id)
+        if len(seen) == k:
+            continue
+        if other == trial.id:
+            raise say("trials", f"expected different ids, trial #{k} has the id {trial.id} again")
+        raise say(
+            "trials",
+            f"expected ids that differ in more than letter case, trial #{k} has the id {trial.id}, another"
+            f" {other}",
+        )
+
+
+def different_materials(names: Iterable[str]) -> None:
+    """Refuses materials whose names differ in letter case alone: they name cards."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(on_any_disk(name), name)
+        if other != name:
+            raise say(
+                "materials", f"expected names that differ in more than letter case, got {other} and {name}"
+            )
 
 
 def only_one(**given: object) -> None:

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from calibration.experiment._beam import BeamEntry, read_beam
 from calibration.experiment._coupon import CouponEntry, read_coupon
-from calibration.experiment._fields import Name, Strict, below, different_ids, say
+from calibration.experiment._fields import Name, Strict, below, different_ids, different_materials, say
 from calibration.experiment._files import MAIN, Files
 from calibration.experiment._poke import PokeEntry, read_poke
 from calibration.experiment._yaml import parse
@@ -61,6 +61,7 @@ class ExperimentEntry(Strict):
     @model_validator(mode="after")
     def _names(self) -> ExperimentEntry:
         different_ids(self.trials)
+        different_materials(self.materials)
         for k, trial in enumerate(self.trials):
             if trial.material not in self.materials:
                 known = ", ".join(self.materials)

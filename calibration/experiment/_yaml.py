@@ -76,7 +76,7 @@ def parse(text: bytes, path: Path, model: type[M]) -> M:
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        raise InputError(f"{path}: {' '.join(_sentence(error, data).split())}") from None
+        raise InputError(f"{path}: {sentence(error, data)}") from None
 
 
 def key_path(parts: Sequence[str | int], data: object) -> str:
@@ -94,6 +94,24 @@ def key_path(parts: Sequence[str | int], data: object) -> str:
             if part not in ("beam", "poke", "coupon", "[key]"):
                 text += f"[#{part + 1}]" if isinstance(part, int) else f".{part}"
     return text.removeprefix(".")
+
+
+def first_reason(error: ValidationError) -> tuple[tuple[str | int, ...], str]:
+    """Place of the first of a model's problems, and what was expected there."""
+    first = error.errors(include_url=False)[0]
+    return first["loc"], " ".join(_reason(first["type"], first.get("ctx", {}), first["msg"]).split())
+
+
+def sentence(error: ValidationError, data: dict[Any, Any]) -> str:
+    """The problems of a model in one sentence: the key of the first, what was expected, places of the others.
+
+    Parameters
+    ----------
+    error : ValidationError
+    data : dict
+        What the model was made of.
+    """
+    return " ".join(_sentence(error, data).split())
 
 
 def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
@@ -156,6 +174,8 @@ def _reason(kind: str, context: dict[str, Any], message: str) -> str:
             return "expected it here" if kind == "missing" else "expected beam, poke or coupon"
         case "union_tag_invalid":
             return "expected beam, poke or coupon"
+        case "extra_forbidden":  # of models that do not look for a key that was meant
+            return "expected no such key"
         case "greater_than":
             return f"expected more than {context['gt']:g}"
         case "greater_than_equal":

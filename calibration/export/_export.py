@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration._files import write_whole
 from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.experiment.model import CouponTrial, Experiment
 from calibration.export import _readme, _registry
 from calibration.export._convert import convert
+from calibration.export._earlier import earlier_files, remove
 from calibration.export._job import Job, Target, Written
 from calibration.export._response import elastic, long_time
 from calibration.export._scene import predict, scene_of, solve
@@ -72,7 +74,8 @@ class Exported:
 
     @property
     def within(self) -> bool:
-        """True if the program that was run gave the expected beam; True where none was run."""
+        """True if the program that was run gave the expected beam, or none was run; False where none was
+        expected."""
         return self.checked is None or self.checked.from_expected <= self.checked.limit
 
 
@@ -115,7 +118,7 @@ def export_card(
     check : bool
         Run the program on the scene.
     overwrite : bool
-        Write into a folder that is not empty.
+        Write into a folder that is not empty: the files of an earlier export in it are replaced, others stay.
 
     Returns
     -------
@@ -159,11 +162,13 @@ def export_card(
         notes.append(
             f"density {weighed:g} kg/m3, as experiment {named!r} states it; the card has {file.density:g}"
         )
-    folder.mkdir(parents=True, exist_ok=True)
-    written = target.write(made, folder)
     lost = _readme.losses(made, high)
-    path = folder / "README.md"
-    path.write_text(_readme.readme(made, target, written, lost, notes), encoding="utf-8")
+    folder.mkdir(parents=True, exist_ok=True)
+    earlier = earlier_files(folder)
+    written = target.write(made, folder)
+    remove(earlier, keep=written.files)
+    path = folder / "README.md"  # last: until then the earlier one names the files to remove
+    write_whole(path, _readme.readme(made, target, written, lost, notes))
     remarks = [*written.remarks, *_readme.scene_lines(made, target), *notes]
     checked = _check(made, target, folder) if check else None
     return Exported(
@@ -235,7 +240,10 @@ def _job(
     if "fibres" in keeps:
         scene = replace(scene, beam=replace(scene.beam, material=plain))
         found = solve(scene)
-    prediction = predict(scene, found, job.form, element_error=target.element_share(refinement))
+    prediction = predict(
+        scene, found, job.form, replaced=conversion.how == "fit",
+        element_error=target.element_share(refinement),
+    )  # fmt: skip
     return replace(job, scene=scene, prediction=prediction), notes, high
 
 

@@ -166,23 +166,3 @@ def isochoric_twin(law: str, parameters: laws.Parameters) -> Form | None:
         second = c10 * float(np.asarray(parameters["stiffening"], dtype=float))
         return Form(kind="polynomial", bulk=moduli.bulk_modulus, terms=(((1, 0), c10), ((2, 0), second)))
     return None
-
-
-def as_law(form: Form) -> tuple[str, dict[str, float | tuple[float, ...]]] | None:
-    """The law of tisim that a form is, with its parameters; None for a form that tisim does not have."""
-    if form.kind in COUPLED:
-        return form.kind, {"mu": form.mu[0], "lam": form.lam}
-    if form.volume != "log":
-        return None
-    if form.kind == "ogden":
-        return "ogden", {"mu": form.mu, "alpha": form.alpha, "bulk": form.bulk}
-    if form.kind == "arruda-boyce":
-        return "arruda-boyce", {"mu": form.mu[0], "locking": form.locking, "bulk": form.bulk}
-    terms = dict(form.terms)
-    if set(terms) <= {(1, 0), (0, 1)}:
-        return "mooney-rivlin", {
-            "c10": terms.get((1, 0), 0.0),
-            "c01": terms.get((0, 1), 0.0),
-            "bulk": form.bulk,
-        }
-    return None

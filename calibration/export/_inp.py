@@ -18,7 +18,7 @@ from calibration.export._scene import BeamScene
 from tisim import Material
 from tisim.parts import HolzapfelGasserOgden
 
-MOST_TERMS = 3  # of Ogden and polynomial forms, in both programs
+MOST_TERMS = 3  # of Ogden and polynomial forms, which both programs take
 
 
 def writes(form: Form, material: Material) -> Form | None:  # noqa: ARG001 - one signature for all targets

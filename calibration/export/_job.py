@@ -105,6 +105,8 @@ class Target:
     check : callable (Path) -> ndarray of shape (n, 3), optional
         Runs the scene of a folder, and gives the displacement of its nodes in the mesh's order [m];
         InputError where the program is not installed.
+    results : tuple of str
+        Names of the files that a run leaves beside the scene; a new export into the folder removes them.
     """
 
     name: str
@@ -117,6 +119,7 @@ class Target:
     most_poisson: float | None = None
     tip_force: bool = True
     check: Callable[[Path], Array] | None = None
+    results: tuple[str, ...] = ()
 
     def element_share(self, refinement: float) -> float:
         """`element_error` on a mesh of that refinement; 0 for linear elements."""

@@ -18,6 +18,7 @@ from calibration.export._response import (
 )
 from tisim import parts
 
+SIGNATURE = "SI units. Written by `python -m calibration.export`."  # by which a folder is known as an export
 TITLES = {
     "polynomial": "polynomial in the isochoric invariants",
     "ogden": "Ogden",
@@ -95,7 +96,6 @@ def scene_lines(job: Job, target: Target) -> list[str]:
     if job.scene is None or job.prediction is None:
         return []
     p, share = job.prediction, target.element_share(job.scene.refinement)
-    form = TITLES[job.form.kind]
     found = [
         f"Scene: {job.scene.name}. In tisim its end (or middle) moves by {_mm(p.reference)} mm;"
         f" {job.scene.mesh.n_nodes} nodes, {job.scene.mesh.n_elements} {target.element}."
@@ -113,17 +113,18 @@ def scene_lines(job: Job, target: Target) -> list[str]:
                 f" ({'too stiff' if p.elements < 0 else 'too soft'}); the rest is the law. --refinement makes"
                 " the mesh finer."
             )
+    elif p.expected is not None and job.conversion.how == "fit":
+        found.append(
+            f"Expected there: {_mm(p.expected)} mm, by tisim with the {TITLES[job.form.kind]} that stands for"
+            f" the card's {job.material.law}, on the same mesh: {percent(max(p.error - share, 0.0))} off by"
+            f" law and mesh, and up to {percent(share)} more between the program's element and tisim's."
+        )
     elif p.expected is not None:
         found.append(
             f"Expected there: {_mm(p.expected)} mm, at most {percent(p.error)} off: what this mesh's elements"
             f" make of it ({percent(max(p.error - share, 0.0))} in tisim, and up to"
             f" {percent(share)} between the program's element and tisim's)."
         )
-        if job.conversion.how == "fit":  # tisim has no beam of that law on these elements to compare with
-            found.append(
-                f"That is the beam of the card's {job.material.law}: by how much more the {form} that stands"
-                " for it moves it is not computed; its difference of stress is stated above."
-            )
     return [*found, *(f"{r[0].upper()}{r[1:]}." for r in p.remarks)]
 
 
@@ -143,7 +144,7 @@ def constants(form: Form) -> str:
 
 def readme(job: Job, target: Target, written: Written, lost: list[str], notes: list[str]) -> str:
     """The text of README.md."""
-    out = [f"# {job.name} for {target.title}", "", "SI units. Written by `python -m calibration.export`.", ""]
+    out = [f"# {job.name} for {target.title}", "", SIGNATURE, ""]
     out += [f"- `{p.name}`: {what}" for p, what in written.files.items()]
     if written.run:
         out += ["", f"Run the beam: `{written.run}`"]

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment.model import BeamTrial, Experiment, beam_as_stated
-from calibration.export._forms import Form, as_law
+from calibration.export._form_law import law_of
+from calibration.export._forms import Form
 from tisim import Beam, Circle, Material, Result, simulate
 from tisim.discretisation.quadrature import reference
 from tisim.mesh import Mesh, beam_mesh, volumes
@@ -201,21 +202,33 @@ def solve(scene: BeamScene) -> Reference:
     return Reference(moved=_end(results[1], plain), low=low, high=high)
 
 
-def predict(scene: BeamScene, found: Reference, form: Form, *, element_error: float) -> Prediction:
+def predict(
+    scene: BeamScene, found: Reference, form: Form, *, replaced: bool, element_error: float
+) -> Prediction:
     """Result expected of the target for the beam, by tisim.
 
-    element_error: how far a target's quadratic elements may be from tisim's on the same mesh, a fraction.
+    Parameters
+    ----------
+    scene : BeamScene
+    found : Reference
+        The beam with the card's law.
+    form : Form
+        What the target is given.
+    replaced : bool
+        The form is another law than the card's, and not only by its volumetric part.
+    element_error : float
+        How far a target's quadratic elements may be from tisim's on the same mesh, a fraction.
     """
-    plain, law = scene.beam, as_law(form)
+    plain, scenes = scene.beam, []
     quadratic = scene.mesh.kind == "tet10"
-    scenes = []
-    if quadratic:
-        scenes.append(replace(plain, mesh=scene.mesh))
-    elif law is not None:
-        material = Material(law=law[0], parameters=law[1], density=plain.material.density)
-        other = replace(plain, material=material)
-        scenes += [replace(other, mesh=scene.mesh, element=scene.mesh.kind), other]
-    results = simulate(scenes, workers=1)
+    with law_of(form, any_volume=quadratic) as law:
+        if quadratic and not replaced:
+            scenes.append(replace(plain, mesh=scene.mesh))
+        elif law is not None:
+            other = replace(plain, material=replace(plain.material, law=law[0], parameters=law[1]))
+            scenes.append(replace(other, mesh=scene.mesh, element=scene.mesh.kind))
+            scenes += [] if quadratic else [other]
+        results = simulate(scenes, workers=1)
     expected, elements, error, remarks = None, None, np.nan, []
     if results and results[0].ok:
         expected = scene.moved(results[0].positions[-1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +25,8 @@ The beam that a card was calibrated on, for MuJoCo:
   python -m calibration.export fitted/cards/S0.yaml --to mujoco --out S0-mujoco
     --experiment datasets/measured/bench/clean
 
-Exit codes: 0 written, 1 written but --check found another beam than stated, 2 bad input, 130 stopped.
+Exit codes: 0 written, 1 written but --check found another beam than stated (or none is stated), 2 bad
+input or a program that did not solve the beam, 130 stopped.
 """
 TARGETS = "sofa, febio, abaqus, calculix, mujoco, newton"
 
@@ -55,7 +57,9 @@ def main(
     check: Annotated[
         bool, typer.Option(help="Run the program on the beam and compare: calculix, mujoco, newton.")
     ] = False,
-    overwrite: Annotated[bool, typer.Option(help="Write into a folder that is not empty.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option(help="Replace an earlier export in the folder; other files stay.")
+    ] = False,
     version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """Export a material card and its beam to another program, with what is lost and how much."""
@@ -81,9 +85,14 @@ def main(
         show(f"Written: {', '.join(map(str, found.files))}")
         if (run := found.checked) is not None:
             words = "as stated" if found.within else "BEYOND what is stated"
+            compared = "not compared with an expected one, which tisim did not find, but is"
+            if isfinite(run.from_expected):
+                compared = (
+                    f"{percent(run.from_expected)} from what was expected, {words} (at most"
+                    f" {percent(run.limit)}), and"
+                )
             show(
-                f"Run: the beam's end is {percent(run.from_expected)} from what was expected, {words} (at"
-                f" most {percent(run.limit)}), and {percent(run.from_reference)} from the card's beam in"
+                f"Run: the beam's end is {compared} {percent(run.from_reference)} from the card's beam in"
                 " tisim.",
                 "bold",
             )

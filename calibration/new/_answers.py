@@ -24,7 +24,7 @@ from calibration.experiment._fields import (
 )
 from calibration.experiment._poke import InclusionEntry, Lengths3, RodEntry
 from calibration.experiment._read import MaterialEntry
-from calibration.experiment._yaml import parse
+from calibration.experiment._yaml import parse, sentence
 from calibration.experiment.model import CouponMode, Supports
 from calibration.lab_files import DIMENSIONS, Quantity, unit
 from calibration.new._plausible import CHECKS
@@ -240,9 +240,8 @@ def validate(raw: dict[str, Any]) -> Answers:
     InputError
         One does not fit.
     """
+    data: Any = as_tuples(raw)
     try:
-        return Answers.model_validate(as_tuples(raw))
+        return Answers.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"answers: key {key}: {first['msg']}") from None
+        raise InputError(f"answers: {sentence(error, data)}") from None

@@ -17,8 +17,14 @@ _RULER = 100.0  # mm
 _BELOW, _LEAST_BELOW = 16.0, 5.0  # mm, of the ruler and its text, and of the paper between it and the squares
 
 
-def board_pdf(board: BoardAnswers) -> bytes:
+def board_pdf(board: BoardAnswers, key: str = "board.square_mm") -> bytes:
     """One page with the board, a ruler of 100 mm to check the print, and how to print it.
+
+    Parameters
+    ----------
+    board : BoardAnswers
+    key : str
+        Where the side of a square stands, for the sentence on one that is too large.
 
     Raises
     ------
@@ -32,7 +38,7 @@ def board_pdf(board: BoardAnswers) -> bytes:
     largest = _largest(columns, rows, page)
     if side > largest:
         raise InputError(
-            f"board.square_mm: a board of {columns} x {rows} squares of {side:g} mm does not fit on"
+            f"{key}: a board of {columns} x {rows} squares of {side:g} mm does not fit on"
             f" {board.page}: expected at most {math.floor(10 * largest) / 10:g} mm"
         )
     below = max(side, _LEAST_BELOW) + _BELOW

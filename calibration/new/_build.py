@@ -95,7 +95,7 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
         materials.setdefault(name, {})
     photographed = any("photo" in c for trial in trials for c in trial.get("captures", ()))
     settings = photo_settings(work, answers.photographs) if photographed else {}
-    board = None if answers.board is None else board_pdf(answers.board)
+    board = None if answers.board is None else board_pdf(answers.board, f"{asker.place}: key board.square_mm")
     notes = answers.notes
     if work.defaults:
         notes = "\n".join(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from calibration._files import write_whole
 from calibration.cli import Version, command, plain_ends
 from calibration.errors import InputError, OptionError
 
@@ -66,15 +68,19 @@ def main(
     if show:
         _show(given)
         return
-    if board is not None:
-        _print_board(board, squares, square_mm, page)
-        if yes is None and not given:
-            return
-    if out is None:
+    alone = yes is None and not given
+    printed = None if board is None else _board(board, squares, square_mm, page)
+    if out is None and not (printed and alone):
         raise OptionError("out", None, "missing, expected the folder to write")
-    if yes is None and not given:
+    if alone and not printed:
         raise InputError("expected files, or answers by --yes FILE, or --board FILE")
-    _build(given, out, yes)
+    if not alone:
+        assert out is not None
+        _build(given, out, yes)
+    if board is not None and printed is not None:  # last: a command that fails has written nothing
+        write_whole(board, printed)
+        size = f"{squares.lower().replace('x', ' x ')} squares of {square_mm:g} mm"
+        typer.echo(f"{board}: {size} on {page}; print at 100 %")
 
 
 def _show(files: list[Path]) -> None:
@@ -87,12 +93,18 @@ def _show(files: list[Path]) -> None:
         typer.echo(describe(file, *read_lab_file(file)))
 
 
-def _print_board(path: Path, squares: str, square_mm: float, page: str) -> None:
+def _board(path: Path, squares: str, square_mm: float, page: str) -> bytes:
+    """The PDF of the board; what would keep it from being written there is refused."""
     from pydantic import ValidationError
 
+    from calibration.experiment._yaml import first_reason
     from calibration.new._answers import BoardAnswers
     from calibration.new._board import board_pdf
 
+    if path.suffix.lower() != ".pdf" or path.is_dir():
+        raise OptionError("board", path, "expected a file .pdf")
+    if not os.access(path.absolute().parent, os.W_OK):
+        raise OptionError("board", path, "expected a file in a folder that is there and can be written to")
     try:
         columns, rows = (int(n) for n in squares.lower().split("x"))
     except ValueError:
@@ -102,13 +114,10 @@ def _print_board(path: Path, squares: str, square_mm: float, page: str) -> None:
             {"squares": (columns, rows), "square_mm": square_mm, "page": page}
         )
     except ValidationError as error:
-        first = error.errors()[0]
-        raise OptionError(str(first["loc"][0]), first["input"], first["msg"]) from None
-    if path.suffix.lower() != ".pdf":
-        raise OptionError("board", path, "expected a file .pdf")
-    content = board_pdf(board)
-    path.write_bytes(content)
-    typer.echo(f"{path}: {columns} x {rows} squares of {square_mm:g} mm on {page}; print at 100 %")
+        place, reason = first_reason(error)
+        given = {"squares": squares, "square_mm": f"{square_mm:g}", "page": page}
+        raise OptionError(str(place[0]), given[str(place[0])], reason) from None
+    return board_pdf(board, "--square-mm")
 
 
 def _build(files: list[Path], out: Path, yes: Path | None) -> None:

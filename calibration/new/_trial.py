@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration._files import on_any_disk
 from calibration.errors import InputError
 from calibration.new._asking import SD, Asker, Question, zero_or_more
 
@@ -57,8 +58,9 @@ class Work:
         stem = "".join(c if c.isalnum() or c in " ._-+" else "_" for c in path.stem).strip() or "file"
         for number in range(1, 10_000):
             name = f"{folder}/{stem}{'' if number == 1 else f'-{number}'}{path.suffix.lower()}"
-            if self.copies.setdefault(name, path) == path:
-                return name
+            same = next((n for n in self.copies if on_any_disk(n) == on_any_disk(name)), name)
+            if self.copies.setdefault(same, path) == path:
+                return same
         raise InputError(f"{path}: expected fewer files of one name")
 
     def settle(

@@ -23,6 +23,8 @@ from calibration.shape import centreline, sweep
 
 VERSION = 3  # raised when the same photograph would be traced differently
 LEDGER = ".reconstruct"
+REPORT = "reconstruct.json"
+_SOURCE = f"{LEDGER}/experiment.json"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,6 +40,37 @@ class Job:
     def traced(self) -> bool:
         """It came as an outline: the chain starts at the mid line."""
         return self.capture.outline is not None
+
+
+def note_source(out: Path, experiment: Path, name: str) -> None:
+    """Notes in the folder that is written which experiment is traced there."""
+    noted = {"name": name, "folder": str(experiment.resolve())}
+    write_whole(out / _SOURCE, json.dumps(noted, indent=1))
+
+
+def other_source(out: Path, experiment: Path, name: str) -> str | None:
+    """Name and folder of the experiment that is traced in a folder, None if it is this one or none is noted.
+
+    The same folder is the same experiment, also under another name; so is one of the same name whose folder
+    is no longer there: it was moved. Before 2026-11-28 only the name of its folder was noted, at the end.
+    """
+    try:
+        noted = json.loads((out / _SOURCE).read_text(encoding="utf-8"))
+        folder, known = Path(noted["folder"]), str(noted["name"])
+    except FileNotFoundError:
+        return _earlier_source(out, experiment)
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    moved = known == name and not (folder / "experiment.yaml").exists()
+    return None if moved or folder == experiment.resolve() else f"{known!r} of {folder}"
+
+
+def _earlier_source(out: Path, experiment: Path) -> str | None:
+    try:
+        known = str(json.loads((out / REPORT).read_text(encoding="utf-8"))["experiment"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return None if known == experiment.resolve().name else f"of a folder {known}"
 
 
 def digest(job: Job, board: Board | None, camera: Camera | None, settings: PhotoSettings) -> str:

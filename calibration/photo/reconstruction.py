@@ -8,12 +8,12 @@ from pathlib import Path
 from posixpath import normpath
 from typing import Any
 
-from calibration._files import write_whole
+from calibration._files import on_any_disk, write_whole
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Checkerboard, PhotoSettings, load, read, read_photo_settings
 from calibration.photo._board import Board, find_board
 from calibration.photo._camera import Camera, calibrate
-from calibration.photo._chain import LEDGER, Job, digest, kept, run
+from calibration.photo._chain import LEDGER, REPORT, Job, digest, kept, note_source, other_source, run
 from calibration.photo._files import named_files, outline_name, png, write_copy
 from calibration.photo._image import PhotoProblem, UnusablePhotographs, read_photograph
 from calibration.progress import OnProgress, Progress, to_log
@@ -31,7 +31,7 @@ def reconstruct(
     """Trace every photograph; see `calibration.reconstruct`."""
     read_in, settings = read(experiment), read_photo_settings(experiment)
     target = out or Path(f"{experiment.resolve().name}-traced")
-    _check_target(target, experiment)
+    _check_target(target, experiment, read_in.name, resume=resume)
     jobs = [
         Job(name=f"{trial.id}-{number + 1}".replace("/", "-"), trial=trial, number=number, capture=capture)
         for trial in read_in.trials
@@ -43,6 +43,8 @@ def reconstruct(
     _check_names(jobs, experiment)
     work = _Work()
     _find_boards(jobs, experiment, settings, work, on_progress)
+    if work.problems.keys() != {job.name for job in jobs}:
+        note_source(target, experiment, read_in.name)
     _run_all(jobs, target, settings, work, on_progress, resume=resume)
     return _finish(jobs, experiment, target, work, skip_bad=skip_bad)
 
@@ -59,22 +61,33 @@ class _Work:
     figures: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
-def _check_target(target: Path, experiment: Path) -> None:
+def _check_target(target: Path, experiment: Path, name: str, *, resume: bool) -> None:
     if target.exists() and not target.is_dir():
         raise InputError(f"{target}: expected a folder to write to, it is a file")
     if target.resolve() == experiment.resolve():
         raise InputError(f"{target}: expected a folder other than the experiment's own")
     if (target / "experiment.yaml").exists() and not (target / LEDGER).is_dir():
         raise InputError(f"{target}: holds an experiment that this command did not write")
+    if resume and (other := other_source(target, experiment, name)) is not None:
+        raise InputError(
+            f"--out {target}: holds the traced experiment {other}: choose another folder, or add --overwrite"
+            " to replace it"
+        )
 
 
 def _check_names(jobs: list[Job], experiment: Path) -> None:
     """Refuse a file of the experiment with the name of an outline that is to be traced: both go into one
     folder, and the experiment written there would take the one for the other."""
     main = experiment / "experiment.yaml"
-    theirs = {normpath(name): name for name in named_files(load(main.read_bytes(), main))}
+    theirs: dict[str, str] = {}
+    for name in sorted(named_files(load(main.read_bytes(), main))):
+        other = theirs.setdefault(on_any_disk(normpath(name)), name)
+        if normpath(other) != normpath(name):
+            raise InputError(
+                f"{main}: {name}: expected a name that differs in more than letter case from that of {other}"
+            )
     for job in jobs:
-        if not job.traced and (name := outline_name(job.name)) in theirs:
+        if not job.traced and (name := on_any_disk(outline_name(job.name))) in theirs:
             raise InputError(
                 f"{main}: {theirs[name]}: expected another name of this file, it is that of the outline"
                 f" traced from {job.name}"
@@ -188,7 +201,7 @@ def _finish(jobs: list[Job], folder: Path, target: Path, work: _Work, *, skip_ba
         if not work.problems:
             raise
         raise UnusablePhotographs(str(error), work.problems) from None
-    report = {"experiment": folder.name, "captures": work.figures, "left_out": work.problems}
-    write_whole(target / "reconstruct.json", json.dumps(report, indent=1).encode())
+    report = {"experiment": folder.resolve().name, "captures": work.figures, "left_out": work.problems}
+    write_whole(target / REPORT, json.dumps(report, indent=1).encode())
     # what was written is an experiment
     return Reconstruction(target, read(target), dict(work.figures), dict(work.problems))

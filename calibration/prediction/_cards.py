@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
+from calibration.experiment._yaml import sentence
 from calibration.inference import WIDTH
 from calibration.parameters import (
     Parametrisation,
@@ -192,9 +193,7 @@ def read_cards(path: Path) -> dict[str, CardFile]:
         try:
             card = CardFile.model_validate(content)
         except ValidationError as error:
-            first = error.errors()[0]
-            key = ".".join(str(x) for x in first["loc"])
-            raise InputError(f"{file}: key {key}: {first['msg']}") from None
+            raise InputError(f"{file}: {sentence(error, content)}") from None
         if card.material in found:
             raise InputError(
                 f"{path}: expected one card of {card.material}, got {names[card.material]} and {file.name}"

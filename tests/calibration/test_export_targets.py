@@ -11,7 +11,6 @@ import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import pytest
@@ -20,11 +19,8 @@ from typer.testing import CliRunner
 
 import calibration.export as export
 import tisim
-from calibration.export import Job, Prediction, Target, Written, _export, _registry
-from calibration.export._convert import Conversion
-from calibration.export._forms import Form
-from calibration.export._readme import scene_lines
-from calibration.export._scene import Reference, scene_of
+from calibration.export import Job, Prediction, Target, Written, _export
+from calibration.export._scene import Reference
 from calibration.export.command import TARGETS, app
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -115,24 +111,6 @@ def test_linear_tetrahedra_are_told_with_their_error(tmp_path: Path) -> None:
     assert done.job.scene is not None
     np.testing.assert_array_equal(mesh.elements, done.job.scene.mesh.elements)
     compile(text(tmp_path / "n" / "beam.py"), "beam.py", "exec")
-
-
-@pytest.mark.parametrize("how", ["volume", "fit"])
-def test_a_beam_of_another_law_is_told_from_that_of_the_elements(how: Literal["volume", "fit"]) -> None:
-    """With quadratic elements the expected beam is of the card's law, which the program may not have."""
-    soft = tisim.material_from_moduli("st-venant-kirchhoff", shear_modulus=15e3, bulk_modulus=300e3)
-    form = Form(kind="polynomial", bulk=300e3, terms=(((1, 0), 7.5e3),))
-    conversion = Conversion(form=form, how=how, differences=(), pressure=0.0)
-    scene, _ = scene_of(soft, "tet10", refinement=0.3)
-    end = np.array([0.0, 0.0, -0.01])
-    found = Prediction(reference=end, expected=end, error=0.05, low=0.9, high=1.1)
-    job = Job(
-        name="S", material=soft, conversion=conversion, keeps=frozenset(), scene=scene, prediction=found
-    )
-    told = " ".join(scene_lines(job, _registry.get("calculix")))
-    assert ("the beam of the card's st-venant-kirchhoff: by how much more the polynomial" in told) == (
-        how == "fit"
-    )
 
 
 def test_time_goes_to_those_who_have_it(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 from typer.testing import CliRunner
@@ -20,9 +21,12 @@ from factory import _build
 from factory.__main__ import app as factory_app
 from factory._build import Built, build_dataset
 from factory._cli import make_console
-from factory._report import Screen, estimate, preview_path
+from factory._figures import draw_preview, preview_of
+from factory._report import Screen, estimate, preview_path, traces_of
+from factory._store import manifest_digest
 from factory.build import default_target
 from factory.plan import Plan
+from factory.reader import open_dataset
 from tests.factory.conftest import ROOT, TINY, digest, environment, run_app
 
 run = CliRunner().invoke
@@ -260,10 +264,45 @@ def test_build_picture_and_second_call(tiny_file: Path, tmp_path: Path) -> None:
     assert code == 0
     assert "nothing was left to simulate" in output
     assert digest(target) == before
+    assert preview_of(tmp_path / "new" / "a.png") == manifest_digest(target)
     code, output, _ = _call(*arguments, "--overwrite")
     assert "4 simulated now" in output
     assert digest(target) == before
     assert sorted(path.name for path in target.parent.iterdir()) == ["a.png", "a.zarr"]
+
+
+def test_the_preview_of_an_earlier_store_is_drawn_again(
+    plan: Plan, finished_store: Path, tiny_file: Path, tmp_path: Path
+) -> None:
+    """A build that is killed between the swap of the store and its last picture leaves the earlier one."""
+    target, picture = tmp_path / "a.zarr", tmp_path / "a.png"
+    shutil.copytree(finished_store, target)
+    arguments = ("--model", "ogden", "--recipe", tiny_file, "--out", target)
+    draw_preview(plan, {}, picture)  # on the way
+    drawn = []
+    for old in (picture.read_bytes(), None):
+        if old is None:
+            picture.unlink()
+        done = run_app(factory.build.app, *arguments)
+        assert done.exit_code == 0
+        assert "nothing was left to simulate" in done.output
+        assert preview_of(picture) == manifest_digest(target) != ""
+        drawn.append(picture.read_bytes())
+        assert drawn[-1] != old
+    os.utime(picture, (0, 0))
+    assert run_app(factory.build.app, *arguments).exit_code == 0
+    assert picture.stat().st_mtime == 0  # it is of the store
+    assert drawn[0] == drawn[1]
+    data = open_dataset(target)
+    traces = traces_of(data)
+    deepest = max(traces, key=lambda i: (data.poke(i).depth.max(), -i))
+    for index, trace in traces.items():
+        poke = data.poke(index)
+        np.testing.assert_array_equal(trace.depth, poke.depth)
+        assert (trace.grid is None) == (index != deepest)
+        if trace.grid is not None:
+            moved = poke.grid[int(poke.depth.argmax())] - data.grid_rest(0)
+            np.testing.assert_allclose(trace.grid, moved, atol=1e-9)
 
 
 def test_failed_pokes_are_said(

@@ -16,7 +16,7 @@ import zarr
 from factory import _build, verify_dataset
 from factory._build import Built, build_dataset
 from factory._errors import InputError
-from factory._store import MANIFEST, DamagedError, write_manifest
+from factory._store import MANIFEST, DamagedError, altered_files, write_manifest
 from factory.build import app as build_app
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
@@ -161,6 +161,38 @@ def test_another_value_in_a_table_is_named(name: str, store: Path) -> None:
         shown = run_app(inspect_app, store, *arguments)
         assert shown.exit_code == 2, shown.output
         assert shown.stderr == f"error: {_shard(store, name)}: its sha256 differs from the manifest\n"
+
+
+FIELDS = ("profile", "grid_displacement", "surface_displacement", "surface_rest", "surface_triangle")
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_another_value_in_a_field_is_named_where_a_poke_is_shown(name: str, store: Path) -> None:
+    array: Any = zarr.open_group(store=store, mode="r+")[name]
+    array[...] = array[...] // 2 if array.dtype.kind in "iu" else array[...] * 2
+    shown = run_app(inspect_app, store, "--poke", "1")
+    assert shown.exit_code == 2, shown.output
+    assert shown.stderr == f"error: {_shard(store, name)}: its sha256 differs from the manifest\n"
+    assert run_app(inspect_app, store).exit_code == 0  # tables alone are read
+
+
+def test_metadata_of_the_root_are_compared(store: Path) -> None:
+    """Zarr reads shapes, types and fill values of all arrays from there."""
+    text = (store / "zarr.json").read_text()
+    (store / "zarr.json").write_text(text.replace('"fill_value": 0', '"fill_value": 1', 1))
+    for arguments in ((), ("--poke", "1")):
+        shown = run_app(inspect_app, store, *arguments)
+        assert shown.exit_code == 2, shown.output
+        assert shown.stderr == f"error: {store / 'zarr.json'}: its sha256 differs from the manifest\n"
+
+
+def test_only_shards_with_rows_of_the_poke_are_compared(tmp_path: Path) -> None:
+    names = ["a/zarr.json", "a/c/0/0/0", "a/c/1/0/0", "a/c/1/1/0", "a/c/10/0/0", "ab/c/1/0/0", "zarr.json"]
+    (tmp_path / MANIFEST).parent.mkdir()
+    (tmp_path / MANIFEST).write_text(json.dumps({"sha256": dict.fromkeys(names, "other")}))
+    assert altered_files(tmp_path, {"a": None}) == [*sorted(names[:5]), "zarr.json"]
+    assert altered_files(tmp_path, {"a": range(1, 2)}) == [*names[2:4], "a/zarr.json", "zarr.json"]
+    assert altered_files(tmp_path, {"a": range(0)}) == ["a/zarr.json", "zarr.json"]
 
 
 @pytest.mark.parametrize("content", [None, "[1]"])

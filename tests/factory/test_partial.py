@@ -52,7 +52,7 @@ def test_its_preview_shows_what_there_is(
 ) -> None:
     drawn: list[int] = []
     monkeypatch.setattr(
-        "factory._figures.draw_preview", lambda _plan, traces, _path: drawn.append(len(traces))
+        "factory._figures.draw_preview", lambda _plan, traces, _path, _of: drawn.append(len(traces))
     )
     done = run_app(app, "--model", "ogden", "--recipe", tiny_file, "--out", stopped, "--partial")
     assert done.exit_code == 0, done.output

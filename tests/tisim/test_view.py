@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import re
 import shutil
 import zlib
@@ -210,6 +211,54 @@ def test_a_film_is_written(shown: View, tmp_path: Path) -> None:
     pytest.importorskip("imageio_ffmpeg", reason="the extra video is not installed")
     film = shown.animate(tmp_path / "poke.mp4", width=300, seconds=1.0)
     assert film.read_bytes()[4:8] == b"ftyp"
+
+
+def test_a_film_or_page_that_is_not_finished_leaves_the_old_one(
+    shown: View, poke: tisim.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are written beside it, and put in place in one step: here none comes to that."""
+    seen = []
+
+    def killed(part: Path, path: Path) -> None:
+        seen.append((part.name.startswith(path.name), part.stat().st_size > 1000, path.read_text()))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", killed)
+    for name, write in (
+        ("a.html", shown.save),
+        ("a.gif", lambda path: shown.animate(path, seconds=0.2, width=200)),
+        ("a.png", lambda path: tisim.picture(poke, path)),
+        ("a.vtu", lambda path: tisim.write(poke, path)),
+        ("a.ply", lambda path: tisim.write(poke, path)),
+        ("a.stl", lambda path: tisim.write(poke, path)),
+    ):
+        (tmp_path / name).write_text("old")
+        with pytest.raises(KeyboardInterrupt):
+            write(tmp_path / name)
+        assert seen.pop() == (True, True, "old"), name
+        assert (tmp_path / name).read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 6
+
+
+@pytest.mark.parametrize("code", [0, 1])
+def test_a_film_that_ffmpeg_does_not_finish_is_not_left(
+    code: int, shown: View, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ffmpeg is a stand-in that writes its last argument; its format is stated, as the name does not."""
+    program, film = tmp_path / "bin" / "ffmpeg", tmp_path / "poke.mp4"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho "$*" >"$last"\nexit {code}\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:{os.environ['PATH']}")
+    film.write_text("old")
+    if code:
+        with pytest.raises(ValueError, match=r"^poke\.mp4: ffmpeg ended with"):
+            shown.animate(film, seconds=0.2, width=200)
+        assert film.read_text() == "old"
+    else:
+        shown.animate(film, seconds=0.2, width=200)
+        assert " -f mp4 " in film.read_text()
+    assert {p.name for p in tmp_path.iterdir()} == {"bin", "poke.mp4"}
 
 
 def test_no_ffmpeg_is_said_in_one_sentence(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.fields import Fields, Quantities, fields, fields_of_frames, unfold_quantities
+from tisim.io.whole import whole_file, write_whole
 from tisim.mesh import Mesh, surface_triangles, unfold
 from tisim.mesh.quality import volumes
 from tisim.problems.indentation.turning import axis_at
@@ -82,7 +83,8 @@ def write(result: Result, path: str | Path, frame: int = -1) -> Path:
         mesh, x = unfold(result.mesh, result.positions[frame])
         faces = surface_triangles(mesh)
         used, place = np.unique(faces, return_inverse=True)
-        trimesh.Trimesh(x[used], place.reshape(-1, 3), process=False).export(path)
+        with whole_file(path) as part:
+            trimesh.Trimesh(x[used], place.reshape(-1, 3), process=False).export(part, file_type=ending[1:])
     return path
 
 
@@ -101,7 +103,7 @@ def _write_series(result: Result, path: Path) -> None:
             f'    <DataSet timestep="{moment:.9g}" part="0" file="{escape(f"{folder.name}/{name}")}"/>'
         )
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "  <Collection>"]
-    path.write_text("\n".join([*lines, *rows, "  </Collection>", "</VTKFile>", ""]), encoding="utf-8")
+    write_whole(path, "\n".join([*lines, *rows, "  </Collection>", "</VTKFile>", ""]))
 
 
 def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> None:
@@ -135,12 +137,14 @@ def _write_vtu(result: Result, frame: int, found: Fields | None, path: Path) -> 
     if found is not None:
         point_data |= _flat(unfold_quantities(half, found.nodes, nodes=True))
         cell_data |= _flat(unfold_quantities(half, found.elements, nodes=False))
-    meshio.Mesh(
+    made = meshio.Mesh(
         x,
         [(_VTK[mesh.kind], mesh.elements.astype(np.int64))],
         point_data=point_data,
         cell_data={name: [values] for name, values in cell_data.items()},
-    ).write(path)
+    )
+    with whole_file(path) as part:
+        made.write(part, file_format="vtu")
 
 
 def _flat(found: Quantities) -> dict[str, NDArray]:

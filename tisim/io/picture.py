@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tisim import laws
 from tisim.bodies import Vector
 from tisim.io.export import checked_path
+from tisim.io.whole import whole_file
 from tisim.mesh import FACET_OUTLINE, Mesh, boundary_facets, unfold
 from tisim.problems import kind_of
 from tisim.problems.indentation.rod import rod_surface
@@ -122,7 +123,8 @@ def picture(
         PolyCollection(flat_polygons, facecolors=faces, edgecolors=edges, linewidths=0.25, zorder=1)
     )
     _finish(figure, axes, flat_polygons, scale, title or describe(result, frame), whole=not cut)
-    figure.savefig(path, dpi=dpi, format="png")
+    with whole_file(path) as part:
+        figure.savefig(part, dpi=dpi, format="png")
     return path
 
 

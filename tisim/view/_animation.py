@@ -14,6 +14,7 @@ import numpy as np
 
 from tisim.io.export import checked_path
 from tisim.io.picture import Camera, painted, shaded
+from tisim.io.whole import whole_file
 from tisim.view._view import Array, Surface, View
 from tisim.view.page import COLOURS, colour_ranges, drawn_positions
 
@@ -40,10 +41,13 @@ def animate(view: View, path: str | Path, *, colour: str | None, seconds: float,
         known = ", ".join(view.colourings) or "none"
         raise ValueError(f"colour {colour!r}: expected one of {known}")
     checked_path(path)
-    if ending == ".gif":
-        _gif(list(_pictures(view, colour, width)), path, seconds, turns=len(view.labels) == 1)
-    else:
-        _mp4(list(_pictures(view, colour, width)), path, seconds, _ffmpeg(path))
+    ffmpeg = _ffmpeg(path) if ending == ".mp4" else ""
+    pictures = list(_pictures(view, colour, width))
+    with whole_file(path) as part:
+        if ending == ".gif":
+            _gif(pictures, part, seconds, turns=len(view.labels) == 1)
+        else:
+            _mp4(pictures, part, seconds, ffmpeg, name=path.name)
     return path
 
 
@@ -178,15 +182,15 @@ def _palette() -> Image:
     return image
 
 
-def _mp4(pictures: list[Image], path: Path, seconds: float, ffmpeg: str) -> None:
+def _mp4(pictures: list[Image], path: Path, seconds: float, ffmpeg: str, *, name: str) -> None:
     width, height = (side - side % 2 for side in pictures[0].size)
     command: list[Any] = [
         ffmpeg, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
         "-framerate", f"{len(pictures) / seconds:.6g}", "-i", "-", "-pix_fmt", "yuv420p", "-r", "30",
-        "-movflags", "+faststart", str(path),
+        "-movflags", "+faststart", "-f", "mp4", str(path),
     ]  # fmt: skip
     data = b"".join(picture.crop((0, 0, width, height)).tobytes() for picture in pictures)
     ended = subprocess.run(command, input=data, capture_output=True, check=False)
     if ended.returncode != 0:
         said = " ".join(ended.stderr.decode(errors="replace").split())[:200]
-        raise ValueError(f"{path.name}: ffmpeg ended with {said}")
+        raise ValueError(f"{name}: ffmpeg ended with {said}")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.io.export import checked_path
+from tisim.io.whole import write_whole
 from tisim.mesh import FACET_OUTLINE
 
 Array = NDArray[np.float64]
@@ -133,10 +134,8 @@ class View:
         return page(self)
 
     def save(self, path: str | Path) -> Path:
-        """Write the page; FileNotFoundError if the folder does not exist."""
-        path = checked_path(path)
-        path.write_text(self.html(), encoding="utf-8")
-        return path
+        """Write the page, whole or not at all; FileNotFoundError if the folder does not exist."""
+        return write_whole(checked_path(path), self.html())
 
     def animate(
         self,

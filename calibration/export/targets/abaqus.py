@@ -25,11 +25,16 @@ def keeps(material: Material, form: Form) -> set[str]:
     found = set()
     if material.viscosity is not None and len(material.viscosity.spectrum().times) <= MOST_TERMS:
         found.add("viscosity")
-    if isinstance(material.softening, OgdenRoxburgh):
+    if _softens(material):
         found.add("softening")
     if material.fibres is not None and _inp.has_fibres(material, form):
         found.add("fibres")
     return found
+
+
+def _softens(material: Material) -> bool:
+    """*MULLINS EFFECT needs an r above 1, as it is written; tisim also has 1."""
+    return isinstance(material.softening, OgdenRoxburgh) and float(_inp.number(material.softening.r)) > 1.0
 
 
 def writes(form: Form, material: Material) -> Form | None:
@@ -72,6 +77,8 @@ def write(job: Job, folder: Path) -> Written:
     material.write_text("\n".join([*lines, ""]), encoding="ascii", errors="replace")
     files = {material: "the material: include it, or copy it into a deck"}
     remarks = ["not run by tisim's tests, which have no Abaqus: syntax as its Keywords Reference has it"]
+    if isinstance(job.material.softening, OgdenRoxburgh) and "softening" not in job.keeps:
+        remarks.append("Abaqus takes an r of Ogden-Roxburgh softening above 1 only")
     if "softening" in job.keeps and "viscosity" in job.keeps:
         remarks.append(
             "in what order softening and viscosity act is Abaqus's own; in tisim viscosity relaxes what"

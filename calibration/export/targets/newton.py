@@ -127,8 +127,9 @@ def write(job: Job, folder: Path) -> Written:
 
 
 def check(folder: Path) -> NDArray[np.float64]:
-    if find_spec("newton") is None:
-        raise InputError("--check: newton is not installed: pip install newton")
+    for package in ("newton", "meshio"):
+        if find_spec(package) is None:
+            raise InputError(f"--check: {package} is not installed: pip install newton meshio")
     moved, still = runpy.run_path(str(folder / "beam.py"))["main"]()
     if not still:
         raise InputError("--check: Newton's beam still swings after 1 s: too soft for the damping")

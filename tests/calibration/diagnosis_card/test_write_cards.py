@@ -14,7 +14,7 @@ from card_cases import MODULI, bench, diagnosis
 import calibration
 import tisim
 from calibration.diagnosis import Candidate, Diagnosis
-from calibration.diagnosis.card import write_cards
+from calibration.diagnosis.card import check_names, write_cards
 from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.rig import read_rig
 from calibration.errors import InputError
@@ -120,6 +120,12 @@ def test_each_effect_goes_where_it_belongs(tmp_path: Path) -> None:
     covariance = diagnosis(causes).finding.explanations[0].fit.covariance()[3:, 3:]
     np.testing.assert_allclose(known.covariance, covariance[np.ix_([0, 3], [0, 3])], rtol=1e-4)
     assert abs(known.covariance[0][1]) > 0.1 * known.covariance[0][0]
+
+
+@pytest.mark.parametrize("name", ["rig", "Rig"])
+def test_no_material_is_named_as_the_rigs_card(name: str) -> None:
+    with pytest.raises(InputError, match=f"material {name}: expected another name, since rig.yaml is"):
+        check_names({"S0", name})
 
 
 @pytest.mark.parametrize("verdict", ["none", "unexplained"])

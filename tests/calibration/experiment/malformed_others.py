@@ -39,6 +39,18 @@ CASES: dict[str, Case] = {
         "key trials:",
         "expected different ids, trial #2 has the id bar",
     ),
+    "ids that differ in case alone": (
+        put("poke", "id", "BAR"),
+        YAML,
+        "key trials:",
+        "expected ids that differ in more than letter case, trial #2 has the id BAR, another bar",
+    ),
+    "materials that differ in case alone": (
+        lambda s: s.materials.update(s0=s.materials["S0"]),
+        YAML,
+        "key materials:",
+        "expected names that differ in more than letter case, got S0 and s0",
+    ),
     "id that is a number": (put("beam", "id", 7), YAML, "key trials[#1].id:", "expected text, got 7"),
     "trial that is text": (lambda s: s.trials.append("bar"), YAML, "key trials[#4]", "expected"),
     "materials empty": (lambda s: s.materials.clear(), YAML, "key materials:", "expected at least 1"),

@@ -98,6 +98,48 @@ def test_a_full_folder_and_missing_arguments_are_refused(made: Path) -> None:
     assert not (made / "x.pdf").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--yes", "none.yaml"], "none.yaml: expected a file with answers (No such file or directory)"),
+        (
+            ["--yes", str(SAMPLES / "answers.yaml"), "--page", "a5"],
+            "--page a5: expected 'a4', 'a3' or 'letter'",
+        ),
+        (["--page", "a5"], "--page a5: expected 'a4', 'a3' or 'letter'"),
+        (["--square-mm", "nan"], "--square-mm nan: expected a finite number"),
+        (["--square-mm", "0.5"], "--square-mm 0.5: expected 1 or more"),
+        (
+            ["--square-mm", "60"],
+            "--square-mm: a board of 9 x 6 squares of 60 mm does not fit on a4: expected",
+        ),
+        (["--squares", "2x6"], "--squares 2x6: expected 3 or more"),
+        (
+            ["--board", "none/board.pdf"],
+            "--board none/board.pdf: expected a file in a folder that is there and",
+        ),
+    ],
+)
+def test_a_command_that_fails_writes_no_board(
+    words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, sentence = new("--board", "board.pdf", "--out", "lab", *words)
+    assert code == 2
+    assert sentence.startswith(f"error: {said}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_board_and_an_experiment_at_once(tmp_path: Path) -> None:
+    """The board may lie in the folder, which has to be empty before."""
+    out = tmp_path / "lab"
+    out.mkdir()
+    code, shown, _ = new("--board", out / "b.pdf", "--yes", SAMPLES / "answers.yaml", "--out", out)
+    assert code == 0
+    assert f"{out / 'b.pdf'}: 9 x 6 squares of 10 mm on a4; print at 100 %" in shown
+    assert {"b.pdf", "experiment.yaml"} <= {p.name for p in out.iterdir()}
+
+
 def test_show_says_what_a_file_holds() -> None:
     code, shown, _ = new("--show", SAMPLES / "zwick.txt")
     assert code == 0

@@ -12,6 +12,8 @@ import yaml
 from typer.testing import CliRunner
 
 from calibration.new import app
+from calibration.new._asking import Nobody
+from calibration.new._trial import Work
 
 SAMPLES = Path(__file__).resolve().parents[3] / "datasets" / "lab-files"
 
@@ -515,6 +517,10 @@ def test_the_lab_may_say_that_the_implausible_is_right(tmp_path: Path) -> None:
             "name: x\ntrials:\n- {id: a, kind: coupon, file: f}\n- {id: a, kind: coupon, file: f}\n",
             "expected different ids, trial #2 has the id a again",
         ),
+        (
+            "name: x\ntrials:\n- {id: a, kind: coupon, file: f}\n- {id: A, kind: coupon, file: f}\n",
+            "expected ids that differ in more than letter case, trial #2 has the id A, another a",
+        ),
     ],
 )
 def test_malformed_answers_are_refused(text: str, said: str, tmp_path: Path) -> None:
@@ -525,3 +531,14 @@ def test_malformed_answers_are_refused(text: str, said: str, tmp_path: Path) -> 
     assert done.stderr.startswith(f"error: {path}: "), done.stderr
     assert said in done.stderr
     assert not (tmp_path / "lab").exists()
+
+
+def test_copies_of_one_name_but_for_case_get_another(tmp_path: Path) -> None:
+    """DSC1.JPG of one day and dsc1.jpg of another are one file on some disks."""
+    work = Work(base=tmp_path, asker=Nobody(tmp_path / "answers.yaml"))
+    names = [
+        work.copy(tmp_path / day / name, "photos") for day, name in (("a", "DSC1.JPG"), ("b", "dsc1.jpg"))
+    ]
+    assert names == ["photos/DSC1.jpg", "photos/dsc1-2.jpg"]
+    assert work.copy(tmp_path / "b" / "dsc1.jpg", "photos") == "photos/dsc1-2.jpg"
+    assert sorted(work.copies) == names

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -265,7 +266,7 @@ def test_bad_settings(lab: Path, tmp_path: Path, text: str, sentence: str) -> No
     assert not out.exists()
 
 
-@pytest.mark.parametrize("name", ["outlines/hang-1.csv", "./outlines//hang-1.csv"])
+@pytest.mark.parametrize("name", ["outlines/hang-1.csv", "./outlines//hang-1.csv", "outlines/Hang-1.csv"])
 def test_a_given_outline_is_not_taken_for_a_traced_one(lab: Path, tmp_path: Path, name: str) -> None:
     """It was copied over the outline that was traced from another photograph."""
     folder, out = tmp_path / "lab", tmp_path / "out"
@@ -304,3 +305,46 @@ def test_targets_it_refuses(lab: Path, tmp_path: Path) -> None:
     result = command(lab, "--out", tmp_path / "other")
     assert result.exit_code == 2
     assert "did not write" in result.output
+
+
+def test_the_traced_experiment_of_another_is_not_replaced(lab: Path, done: Path, tmp_path: Path) -> None:
+    """Experiments of two days, in folders of one name; one that was moved goes on."""
+    out, other = tmp_path / "out", tmp_path / "lab"
+    shutil.copytree(done, out)
+    before = files(out)
+    shutil.copytree(lab, other)
+    raw = yaml.safe_load((lab / "experiment.yaml").read_text())
+    (trial,) = raw["trials"]
+    trial |= {"id": "bar", "captures": trial["captures"][2:]}  # no photograph
+    (other / "experiment.yaml").write_text(yaml.safe_dump(raw))
+    result = command(other, "--out", out)
+    assert result.exit_code == 2
+    assert f"error: --out {out}: holds the traced experiment 'lab' of {lab}: " in result.output
+    assert "add --overwrite" in result.output
+    assert files(out) == before
+    noted = out / ".reconstruct" / "experiment.json"
+    for source in ({"name": "lab", "folder": str(tmp_path / "moved")}, {"name": "old", "folder": str(other)}):
+        noted.write_text(json.dumps(source))
+        assert reconstruction.other_source(out, other, "lab") is None
+    noted.unlink()  # as an earlier version left it
+    assert reconstruction.other_source(out, other, "lab") is None
+    assert reconstruction.other_source(out, tmp_path / "tuesday", "lab") == "of a folder lab"
+    result = command(other, "--out", out, "--overwrite")
+    assert result.exit_code == 0, result.output
+    assert [t.id for t in read(out).trials] == ["bar"]
+
+
+def test_files_whose_names_differ_in_case_alone(lab: Path, tmp_path: Path) -> None:
+    folder, out = tmp_path / "lab", tmp_path / "out"
+    shutil.copytree(lab, folder)
+    main = folder / "experiment.yaml"
+    raw = yaml.safe_load(main.read_text())
+    captures = raw["trials"][0]["captures"]
+    captures.append(captures[2] | {"time_s": 2e3, "outline": "Traced.csv"})
+    shutil.copyfile(folder / "traced.csv", folder / "Traced.csv")
+    main.write_text(yaml.safe_dump(raw))
+    result = command(folder, "--out", out)
+    assert result.exit_code == 2
+    sentence = "traced.csv: expected a name that differs in more than letter case from that of Traced.csv"
+    assert f"error: {main}: {sentence}\n" in result.output
+    assert not out.exists()

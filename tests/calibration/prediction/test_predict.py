@@ -296,11 +296,11 @@ def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) 
         ({"viscosity": {"kind": "prony", "fractions": [0.3]}}, "key viscosity"),
         ({"viscosity": {"kind": "kelvin"}}, "key viscosity.kind: expected one of prony"),
         ({"law": "ogden"}, "key law: expected one of neo-hookean, got ogden"),
-        ({"viscosty": None}, "key viscosty: Extra inputs are not permitted"),
+        ({"viscosty": None}, "key viscosty: expected no such key"),
         ({"material": "S9"}, "expected a card of S0, found S9"),
         (
             {"effects": [{"effect": "relaxation", "parameters": {}, "becomes": "viscosity"}]},
-            "key effects.0.parameters: Dictionary should have at least 1 item",
+            r"key effects\[#1\].parameters: expected at least 1, got 0",
         ),
     ],
 )
