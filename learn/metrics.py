@@ -41,7 +41,7 @@ class Predictions:
     shape : name of the inclusion's shape, shape (f,); "" if it is not known.
     cover : cover over the inclusion where the rod's axis meets the surface [mm], shape (f,); 0 if not known.
     size_gap : size of the inclusion (cube root of its volume), and distance from the indenter's tip to what
-        is rigid (`learn.validity.gap_mm`) [mm], shape (f, 2); 0 if they are not known.
+        is rigid (`learn.quantities.gap_mm`) [mm], shape (f, 2); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     clock : time since contact and the rod's speeds of each frame, as in `learn.models.Pokes`, shape (f, 3);

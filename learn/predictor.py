@@ -29,10 +29,11 @@ from learn.models import Response
 from learn.models.at_points import respond_at
 from learn.points_file import AskedPoints, points_on_top
 from learn.prediction import AtPoints, PokePrediction, html_table
+from learn.quantities import gap_mm, poke_values
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, check_dataset, known_domain, load_run, open_dataset
-from learn.validity import Domain, gap_mm, poke_values, unknown_checks
+from learn.validity import Domain, unknown_checks
 
 Floats = NDArray[np.float64]
 

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
+from learn.quantities import cover_at, gap_mm, poke_values
 from learn.scene_file import kind_of, load_poke, scene_and_poke
-from learn.validity import cover_at, gap_mm, poke_values
 
 if TYPE_CHECKING:
     from learn.predictor import Predictor

@@ -22,7 +22,7 @@ from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import Pokes, Scene, scene_on
-from learn.validity import Interior, interior_of, shape_kind
+from learn.quantities import Interior, interior_of, shape_kind
 
 _MM = 1e-3
 STEEPEST = 45.0  # [degrees]: largest angle between push and normal, as in the simulator

@@ -14,8 +14,8 @@ never presumed.
 
 Errors are larger over large inclusions, and where the indenter comes near what is rigid. The fitted errors
 therefore have a factor e^(b V^(1/3) + c g): V is the inclusion's volume, g the distance from the indenter's
-tip to what is rigid (`learn.validity.gap_mm`). With respect to new shapes each shape is one draw: b and c are
-fitted to five shapes or more.
+tip to what is rigid (`learn.quantities.gap_mm`). With respect to new shapes each shape is one draw: b and c
+are fitted to five shapes or more.
 
 A run is validated on two shapes, too few to predict the error on a third. The test parts of the other folds
 are each predicted by a model that was not trained on their shapes, so that they are further draws of the
@@ -64,7 +64,7 @@ class Intervals:
     factors : factors on the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
     size_gap, force_size_gap : change of the logarithms of both fitted errors per mm of the inclusion's size
-        (`learn.validity.Interior.size`) and of the gap to what is rigid; 0 if there are few shapes.
+        (`learn.quantities.Interior.size`) and of the gap to what is rigid; 0 if there are few shapes.
     """
 
     level: float

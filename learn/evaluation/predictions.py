@@ -16,7 +16,7 @@ from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, Scenes, pokes_of
 from learn.models.at_points import place
-from learn.validity import cover_at, gap_mm, interior_of
+from learn.quantities import cover_at, gap_mm, interior_of
 
 Floats = NDArray[np.float64]
 Cloud = Callable[[Setup], Floats]  # points (n, 3) on a setup's top face [m]

@@ -20,7 +20,7 @@ from learn.models import InvariantGnn, scene_on
 from learn.page import controls, simulated
 from learn.page.graph import INPUTS, Inputs, PagePart, interior_inputs
 from learn.predictor import Predictor
-from learn.validity import shape_kind
+from learn.quantities import shape_kind
 
 NO_INCLUSION = "none"
 

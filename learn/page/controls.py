@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from learn.data import Setup, Store
+from learn.quantities import QUANTITIES
 from learn.scene_file import STEEPEST
-from learn.validity import QUANTITIES, Domain
+from learn.validity import Domain
 
 _BEYOND = 1.5  # ratio of the depth slider's end to the trained depth, so that the limit is visible
 DEGREES = "\N{DEGREE SIGN}"

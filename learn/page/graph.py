@@ -34,7 +34,8 @@ from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
 from learn.onnx_bundle import need_packages, write_graph
 from learn.page.network import RowNetwork, interior_codes
-from learn.validity import NEAR, QUANTITIES, RELATIVE_SLACK, Domain, interior_of, unit_of
+from learn.quantities import NEAR, QUANTITIES, interior_of
+from learn.validity import RELATIVE_SLACK, Domain, unit_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "layers", "soft", "about"]
 _FAR = 1e30  # limit of a range on a side that is not checked
@@ -64,7 +65,7 @@ def interior_inputs(
     -------
     base, looked, vectors, clear, layers: see `learn.page.network.interior_codes`; soft (n,): thickness of the
     soft tissue above the inclusion [m]; about (4,): width and height of the inclusion [mm], 1 for a kind that
-    was not trained, size of the inclusion [mm] (`learn.validity.Interior`).
+    was not trained, size of the inclusion [mm] (`learn.quantities.Interior`).
     """
     rigid = torch.from_numpy(profile == 255).float()
     with torch.no_grad():
@@ -147,7 +148,7 @@ class PagePart(nn.Module):
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
-        """The quantities of `learn.validity.poke_values`, in their order."""
+        """The quantities of `learn.quantities.poke_values`, in their order."""
         site, angle, depth, modulus = poke[:2], poke[2], poke[4], poke[5]
         cover = self._cover(poke, soft)
         to_side = (self.reach - (site - self.middle).abs()).min()
@@ -175,7 +176,7 @@ class PagePart(nn.Module):
         return torch.where(near, soft, torch.full_like(soft, _FAR)).min()
 
     def _gap(self, tip: Tensor, soft: Tensor) -> Tensor:
-        """Distance from the indenter's tip to what is rigid [m], as `learn.validity.gap_mm`."""
+        """Distance from the indenter's tip to what is rigid [m], as `learn.quantities.gap_mm`."""
         x, y, z = self.points.unbind(1)
         below = (tip[2] - (z - soft)).clamp(min=0.0)
         square = (x - tip[0]).square() + (y - tip[1]).square() + below * below

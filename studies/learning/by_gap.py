@@ -21,8 +21,8 @@ from learn.evaluation.intervals_file import load_intervals
 from learn.evaluation.predictions import predict_part
 from learn.metrics import Predictions
 from learn.models import Scenes
+from learn.quantities import NEAR
 from learn.training import load_run
-from learn.validity import NEAR
 
 EDGES = (0.0, 4.0, 8.0, 1e3 * NEAR, np.inf)  # mm; a gap is NEAR at most
 

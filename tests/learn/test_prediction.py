@@ -17,9 +17,10 @@ from learn.data import open_store, split_of
 from learn.errors import InputError, OutsideDomainError
 from learn.evaluation.intervals import Intervals
 from learn.predictor import Predictor
+from learn.quantities import QUANTITIES
 from learn.training import load_run
 from learn.training.run_folder import load_checkpoint, save_checkpoint
-from learn.validity import QUANTITIES, domain_of
+from learn.validity import domain_of
 from tests.learn.commands import call, refused, train_small
 from tests.learn.small_store import write_store
 

@@ -15,8 +15,9 @@ from learn.errors import InputError
 from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN
 from learn.predictor import Predictor
+from learn.quantities import Interior, gap_mm
 from learn.real_time import RealTime
-from learn.validity import OTHER_LAW, Domain, Interior, gap_mm
+from learn.validity import OTHER_LAW, Domain
 from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
