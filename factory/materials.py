@@ -124,7 +124,7 @@ class Card(Strict):
         return Material(law=law, parameters=parameters, density=self.density)
 
 
-def material_of(card: Card, law: str = BASE) -> Material:
+def material_of(card: Card, law: str | None = None) -> Material:
     """Material of a card with the effects that hold in any body, for any scene of tisim.
 
     Strain stiffening changes the law to "yeoh"; a creeping material has its modulus 1 s after loading.
@@ -132,8 +132,9 @@ def material_of(card: Card, law: str = BASE) -> Material:
     Parameters
     ----------
     card : Card
-    law : str
-        Name of a law of `tisim.laws`.
+    law : str, optional
+        Name of a law of `tisim.laws`; by default neo-Hookean, or the card's law if that is an effect
+        (`CardEffect.is_law`).
 
     Raises
     ------
@@ -141,6 +142,8 @@ def material_of(card: Card, law: str = BASE) -> Material:
         If the effects extend another law than `law`, or cannot be applied.
     """
     mine = [e.effect for e in card.effects if not e.left_out(card.material)]
+    if law is None:
+        law = card.law if card.law is not None and any(e.is_law for e in card.effects) else BASE
     if mine and law != BASE:
         raise InputError(
             f"--model {law}: the card of {card.material} extends {BASE} by {', '.join(mine)}, which was found"
