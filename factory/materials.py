@@ -86,7 +86,7 @@ class Card(Strict):
     derived: bool
     provenance: str
     uncertainty: Uncertainty
-    density: Modulus
+    density: Annotated[float, Field(ge=10, le=30_000)]
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
     fitted_to: dict[str, Any] | None = None
@@ -168,6 +168,8 @@ def load_card(name: str, folder: Path | None = None) -> Card:
         If there is no such card, or it is not valid.
     """
     path = card_path(name, folder)
+    if folder is not None and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder of material cards")
     if not path.is_file():
         raise InputError(f"{path}: no material card for material level {name}")
     card = read_yaml(path, Card)
