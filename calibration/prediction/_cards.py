@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
+from calibration.experiment._fields import expected_key
 from calibration.inference import WIDTH
 from calibration.parameters import (
     Parametrisation,
@@ -194,6 +195,9 @@ def read_cards(path: Path) -> dict[str, CardFile]:
         except ValidationError as error:
             first = error.errors()[0]
             key = ".".join(str(x) for x in first["loc"])
+            if first["type"] == "extra_forbidden" and len(first["loc"]) == 1:
+                meant = expected_key(key, list(CardFile.model_fields))
+                raise InputError(f"{file}: unknown key {key}: expected {meant}") from None
             raise InputError(f"{file}: key {key}: {first['msg']}") from None
         if card.material in found:
             raise InputError(
