@@ -99,7 +99,7 @@ def test_a_materials_card_has_its_own_misfit(tmp_path: Path) -> None:
 
 
 def test_a_law_in_place_of_the_baselines_is_the_cards(tmp_path: Path) -> None:
-    """Coupons of Ogden's law to a stretch of 5 and 2; the screen states the time of both rounds."""
+    """Coupons of Ogden's law to a stretch of 5 and 2; the time stated is that of both rounds."""
     ogden = tisim.Material(law="ogden", parameters={"mu": (20e3,), "alpha": (3.5,), "bulk": 1e8})
     random, trials, tables = np.random.default_rng(3), [], {}
     for mode, last in (("uniaxial", 5.0), ("equibiaxial", 2.0)):
@@ -110,11 +110,12 @@ def test_a_law_in_place_of_the_baselines_is_the_cards(tmp_path: Path) -> None:
         entry = coupon_entry(mode, f"{mode}.csv", material="M", mode=mode)
         trials.append({k: v for k, v in entry.items() if k not in ("stretch_sd", "stress_sd_kPa")})
     experiment = calibration.read_experiment(write_experiment(tmp_path / "rubber", trials, tables=tables))
-    begun = time.monotonic()
-    found = calibration.diagnose(experiment, gain=False, workers=1).diagnosis
-    took = time.monotonic() - begun
+    times: list[float] = []
+    found = calibration.diagnose(
+        experiment, gain=False, workers=1, on_progress=lambda _: times.append(time.monotonic())
+    ).diagnosis
     assert [c["effect"] for c in found.causes()] == ["law-form"]
-    assert 0.9 * took < found.seconds <= took
+    assert found.seconds > times[-1] - times[0]
     write_cards(tmp_path / "cards", found, experiment)
     card = load_card("M", tmp_path / "cards")
     assert (card.law, card.effects[0].becomes) == ("ogden", "law")
