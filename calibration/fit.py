@@ -189,12 +189,14 @@ def _write(plan: FitPlan, found: Fits, console: Console, cards: Path | None) -> 
     if not len(found):
         console.print("No fit has found anything yet: no cards, no report.")
         return
+    from calibration.study.calibration import shared_notes
+
     every = plan.with_earlier(found)
     for sentence in every.headlines:
         console.print(sentence, markup=False, highlight=False, soft_wrap=True, style="bold")
-    for r in found:
-        if r.note:
-            console.print(f"{r.material}, {r.label}: {r.note}", markup=False, highlight=False, soft_wrap=True)
+    for note, fits in shared_notes(found).items():
+        names = "; ".join(f"{r.material}, {r.label}" for r in fits)
+        console.print(f"{names}: {note}", markup=False, highlight=False, soft_wrap=True)
     console.print(law_table(every))
     earlier = every.results[len(found) :]
     if earlier:

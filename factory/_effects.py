@@ -93,13 +93,18 @@ class CardEffect(Strict):
             )
         return value
 
+    @property
+    def is_law(self) -> bool:
+        """True if the card's law has the effect, rather than an extension of the base law by a constant."""
+        return self.becomes == "law" and self.effect not in TAKEN
+
     def left_out(self, material: str) -> str:
         """Reason why a dataset of this material ignores the effect; empty if it applies it."""
         if self.applies_to == "shape":
             return "belongs to the beam's form"
         if self.scope not in ("all", material):
             return f"found in {self.scope} alone, not in all of the material"
-        if self.becomes not in (None, "law"):
+        if self.becomes not in (None, "law") or self.is_law:
             return f"the card's {self.becomes} has it"
         return "" if self.effect in TAKEN else "no law of the static simulator has it"
 

@@ -115,8 +115,15 @@ def _key(loc: tuple[int | str, ...]) -> str:
     return ".".join(str(part) for part in loc) or "top level"
 
 
+# pydantic's sentences that do not speak of YAML, in words that do
+_IN_YAML = {
+    "tuple_type": "expected a list",
+    "invalid_key": "expected a name (decimals have points; after a comma begins the next key)",
+}
+
+
 def _fault(problem: Any) -> str:
-    reason = problem["msg"].removeprefix("Value error, ")
+    reason = _IN_YAML.get(problem["type"], problem["msg"].removeprefix("Value error, "))
     reason = reason[0].lower() + reason[1:]
     if isinstance(problem["input"], int | float | str | bool):
         value = repr(problem["input"])

@@ -11,6 +11,7 @@ from tisim import laws
 
 Modulus = Annotated[float, Field(gt=0, lt=1e12)]
 Real = Annotated[float, Field(gt=-1e12, lt=1e12)]
+APART = 100.0  # ratio of the moduli of two laws of one card beyond which one has another unit
 
 
 class Lame(Strict):
@@ -76,6 +77,21 @@ class Laws(Strict):
     mooney_rivlin: Annotated[MooneyRivlin | None, Field(alias="mooney-rivlin")] = None
     ogden: Ogden | None = None
     arruda_boyce: Annotated[ArrudaBoyce | None, Field(alias="arruda-boyce")] = None
+
+    @model_validator(mode="after")
+    def _of_one_material(self) -> Self:
+        """Moduli of one mixture differ between laws by the error of their fits, not by a unit."""
+        base = self.neo_hookean.mu
+        for name, parameters in self.model_dump(by_alias=True).items():
+            if parameters is None or name not in LAWS:
+                continue
+            modulus = laws.get(name).moduli(parameters).shear_modulus
+            if not 1.0 / APART < modulus / base < APART:
+                raise ValueError(
+                    f"{name}: its shear modulus is {modulus:g} Pa, and that of neo-hookean {base:g} Pa:"
+                    " expected all moduli in Pa"
+                )
+        return self
 
     @model_validator(mode="after")
     def _known(self) -> Self:

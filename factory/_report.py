@@ -230,7 +230,9 @@ def effect_lines(plan: Plan) -> list[tuple[str, str]]:
     for card in plan.cards:
         for effect in card.effects:
             left = effect.left_out(card.material)
-            if effect.becomes not in (None, "law"):
+            if effect.is_law and plan.model != card.law:
+                word = f"not taken over: the card's law {card.law} has it: give --model {card.law}"
+            elif effect.becomes not in (None, "law") or effect.is_law:
                 word = f"taken over as the card's {effect.becomes}"
             else:
                 word = f"not taken over: {left}" if left else f"taken over {TAKEN[effect.effect][1]}"

@@ -86,7 +86,7 @@ class Card(Strict):
     derived: bool
     provenance: str
     uncertainty: Uncertainty
-    density: Modulus
+    density: Annotated[float, Field(ge=10, le=30_000)]
     stiffness: Annotated[float, Field(ge=0, lt=1)]
     laws: Laws
     fitted_to: dict[str, Any] | None = None
@@ -124,7 +124,7 @@ class Card(Strict):
         return Material(law=law, parameters=parameters, density=self.density)
 
 
-def material_of(card: Card, law: str = BASE) -> Material:
+def material_of(card: Card, law: str | None = None) -> Material:
     """Material of a card with the effects that hold in any body, for any scene of tisim.
 
     Strain stiffening changes the law to "yeoh"; a creeping material has its modulus 1 s after loading.
@@ -132,8 +132,9 @@ def material_of(card: Card, law: str = BASE) -> Material:
     Parameters
     ----------
     card : Card
-    law : str
-        Name of a law of `tisim.laws`.
+    law : str, optional
+        Name of a law of `tisim.laws`; by default neo-Hookean, or the card's law if that is an effect
+        (`CardEffect.is_law`).
 
     Raises
     ------
@@ -141,6 +142,8 @@ def material_of(card: Card, law: str = BASE) -> Material:
         If the effects extend another law than `law`, or cannot be applied.
     """
     mine = [e.effect for e in card.effects if not e.left_out(card.material)]
+    if law is None:
+        law = card.law if card.law is not None and any(e.is_law for e in card.effects) else BASE
     if mine and law != BASE:
         raise InputError(
             f"--model {law}: the card of {card.material} extends {BASE} by {', '.join(mine)}, which was found"
@@ -165,6 +168,8 @@ def load_card(name: str, folder: Path | None = None) -> Card:
         If there is no such card, or it is not valid.
     """
     path = card_path(name, folder)
+    if folder is not None and not folder.is_dir():
+        raise InputError(f"{folder}: expected a folder of material cards")
     if not path.is_file():
         raise InputError(f"{path}: no material card for material level {name}")
     card = read_yaml(path, Card)

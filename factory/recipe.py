@@ -30,6 +30,7 @@ from tisim.mesh.indentation import CLEARANCE
 Level = Annotated[str, Field(pattern=r"^\w[\w .,+()%-]*$", max_length=100)]
 
 _MM = 1e-3
+SHALLOW, FLAT = 0.01, 1e-3  # of the rod's radius, and the block's height: a depth below both is one in metres
 MOST_FRAMES = 10_000  # of one poke in its ramps; a frame takes some 30 kB in memory
 
 __all__ = ["Protocol", "Recipe", "RodRecipe", "Shape", "load_recipe", "recipe_names"]
@@ -224,6 +225,11 @@ def _check_protocol(recipe: Recipe, shape: Shape) -> None:
         raise ValueError(
             f"{whose}protocol.depth_mm: expected less than the block's height of {height:g} mm, "
             f"got {protocol.depth_mm:g}"
+        )
+    if protocol.depth_mm < min(SHALLOW * recipe.rod.radius_mm, FLAT * height):
+        raise ValueError(
+            f"{whose}protocol.depth_mm: expected a depth in mm that an indenter of radius"
+            f" {recipe.rod.radius_mm:g} mm makes, got {protocol.depth_mm:g}; is it in metres?"
         )
     if 2 * protocol.margin_mm >= min(sides):
         raise ValueError(f"{whose}protocol.margin_mm: expected less than half of the block's sides")

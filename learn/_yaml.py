@@ -87,15 +87,23 @@ def _check_events(text: str) -> None:
 def first_fault(error: ValidationError, source: Mapping[str, Any] | None = None) -> str:
     """First fault of a validation error, as "key KEY: expectation".
 
-    An unknown key comes before a missing one: it is usually the same key, misspelt. `source` is the validated
-    input; models with a tagged union need it, since pydantic's path to a fault has the tag too.
+    An unknown key comes before a missing one, which is named as well: it is usually the same key, misspelt.
+    `source` is the validated input; models with a tagged union need it, since pydantic's path to a fault has
+    the tag too.
     """
     faults = error.errors(include_url=False)
     faults.sort(key=lambda fault: fault["type"] not in ("extra_forbidden", "invalid_key"))
-    path, text = _in_words(faults[0])
-    key = ".".join(_keys(path, source))
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-    return f"key {key}: {text}{more}" if key else f"{text}{more}"
+    first, *others = faults
+    named = [first]
+    if first["type"] == "extra_forbidden":
+        named += [f for f in others if f["type"] == "missing" and f["loc"][:-1] == first["loc"][:-1]]
+    said = []
+    for fault in named:
+        path, text = _in_words(fault)
+        key = ".".join(_keys(path, source))
+        said.append(f"key {key}: {text}" if key else text)
+    left = len(faults) - len(named)
+    return "; ".join(said) + (f" (and {left} more)" if left else "")
 
 
 def _in_words(fault: ErrorDetails) -> tuple[tuple[Any, ...], str]:

@@ -128,7 +128,7 @@ def _material(name: str, modulus: Modulus, diagnosis: Diagnosis, experiment: Exp
     effects = [
         {
             **_entry(k, diagnosis),
-            **becomes(handed.get(c)),
+            **({"becomes": "law"} if _replaces_law(c, name, diagnosis) else becomes(handed.get(c))),
             "applies_to": "material" if diagnosis.effects[c.effect].effect.with_material else "shape",
             "base_law": law,
             "correlations": correlations(k, modulus, diagnosis),
@@ -224,6 +224,11 @@ def _provenance(
         elif h.law is not None:
             lines.append(f"{c.label} is the card's law, {h.law(1.0, 1.0)[0]}.")
         lines += [f"{c.label}: {remark}." for remark in h.remarks]
+    lines += [
+        f"{c.label} is the card's law, {diagnosis.subject.other_laws[name][0]}."
+        for c in fit.candidates
+        if _replaces_law(c, name, diagnosis)
+    ]
     if diagnosis.finding.verdict == "unexplained":
         lines.append("Unexplained: this is the baseline's modulus, and the measurements depart from it.")
     if not fit.converged:
@@ -231,6 +236,13 @@ def _provenance(
     if experiment.materials[name].density is None:
         lines.append("Density not stated by the lab: 1000 kg/m3 assumed.")
     return "\n".join(lines)
+
+
+def _replaces_law(candidate: Candidate, material: str, diagnosis: Diagnosis) -> bool:
+    """True for an effect that is another law in place of the baseline's, which the card then names."""
+    here = diagnosis.subject.materials.get(candidate, frozenset())
+    switch = diagnosis.effects[candidate.effect].switch
+    return switch and material in here and material in diagnosis.subject.other_laws
 
 
 def _of_specimen(candidate: Candidate, diagnosis: Diagnosis) -> bool:

@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from calibration.errors import InputError
 from calibration.experiment._fields import CsvFile, Name, Noise, Strict
 from calibration.experiment._files import Files, parse_table
 from calibration.experiment._thinning import groups
 from calibration.experiment.model import Array, CouponMode, CouponTrial
 
 _KPA = 1e3
+_FAR = 10.0  # a record that begins beyond this stretch holds no stretches
 _MOST_POINTS = 4000  # of a record: a fit ends in seconds, and a curve has no more to say
 
 
@@ -45,6 +47,21 @@ def read_coupon(entry: CouponEntry, files: Files, where: str) -> CouponTrial:
     if bad.size and entry.mode != "simple-shear":  # there it is 1 + gamma, of any sign
         row = int(bad[0])
         raise table.error(row, f"column stretch: expected more than 0, got {stretch[row]:g}")
+    if stretch.min() > _FAR and entry.mode != "simple-shear":
+        raise InputError(
+            f"{table.path}: column stretch: expected stretches from near 1 (at rest) on, the smallest is"
+            f" {stretch.min():g}; is the column in percent, or another one?"
+        )
+    name = entry.record
+    files.need_smaller_sd(
+        f"{where}.stress_sd_kPa",
+        entry.stress_sd_kPa,
+        table.numbers["nominal_stress_kPa"],
+        f"the largest stress of {name} in kPa",
+    )
+    files.need_smaller_sd(
+        f"{where}.stretch_sd", entry.stretch_sd, stretch - 1.0, f"the largest strain of {name}"
+    )
     columns, samples = _averaged(
         {n: table.numbers[n] for n in ("stretch", "nominal_stress_kPa", "time_s") if n in table},
         entry.stretch_sd,

@@ -40,6 +40,17 @@ class Files:
         """An error at a key of experiment.yaml, as one sentence."""
         return InputError(f"{self.main}: key {key}: {text}" if key else f"{self.main}: {text}")
 
+    def need_smaller_sd(self, key: str, sd: float | None, values: Array, what: str) -> None:
+        """InputError where a standard deviation is as large as all of the values, as one of another unit is.
+
+        what : the largest value in words, with its unit.
+        """
+        largest = float(np.abs(values).max())
+        if sd is not None and 0.0 < largest <= sd:
+            raise self.error(
+                key, f"expected less than {what}, {largest:g}, got {sd:g}; has one of them another unit?"
+            )
+
     def read(self, name: str, key: str) -> bytes:
         """Content of the file that `key` names; InputError where it is missing or leads out of the folder."""
         path = self.folder / name

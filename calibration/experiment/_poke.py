@@ -203,6 +203,11 @@ def _record(entry: PokeEntry, files: Files, where: str) -> PokeRecord:
             f"{table.path}: column depth_mm: expected a depth in mm that an indenter of radius"
             f" {entry.rod.radius_mm:g} mm makes, the deepest is {deepest:g}; is the column in metres?"
         )
+    for key, sd, column, what in (
+        ("force_sd_N", entry.force_sd_N, "force_N", "the largest force of {} in N"),
+        ("depth_sd_mm", entry.depth_sd_mm, "depth_mm", "the largest depth of {} in mm"),
+    ):
+        files.need_smaller_sd(f"{where}.{key}", sd, table.numbers[column], what.format(entry.record))
     given = [name for name in _COMPONENTS if name in table]
     if given and len(given) < 3:
         missing = next(name for name in _COMPONENTS if name not in table)

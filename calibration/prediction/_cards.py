@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
+from calibration.experiment._fields import Strict
 from calibration.experiment._yaml import sentence
 from calibration.inference import WIDTH
 from calibration.parameters import (
@@ -112,10 +113,10 @@ class _Baseline(_Lenient):
     model_error: NotNegative = 0.0
 
 
-class CardFile(BaseModel):
+class CardFile(Strict):
     """A material card; keys that a prediction does not need are known, and not looked at."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(strict=False)
 
     material: str
     mixture: Any = None

@@ -168,20 +168,29 @@ def _stated(make: Make, *, law: str, effects: Sequence[str], on_progress: OnMess
 
     options: dict[str, Any] = {} if law == AUTO else dict(zip(("law", "terms"), law_of(law), strict=True))
     model = make(**options)
+    names = [true_name(model.kind, n) for n in effects]
+    shared = list(dict.fromkeys(c.effect for c in model.candidates if c.at == "all"))
+
+    def unknown(name: str) -> OptionError:
+        text = f"expected effects that these trials can show, of {', '.join(shared)}"
+        return OptionError("extend", name, text)
+
+    for name in names:  # before the fits, which take minutes
+        if name not in shared:
+            raise unknown(name)
     on_progress("fitting the baseline")
     known = model.settle_noise("stated")
     start = State(u=model.start())
     model.update_nuisances(start)
     base = best = fit(model, start)
-    for name in (true_name(model.kind, n) for n in effects):
+    for name in names:
         on_progress(f"fitting {name}")
         forms = [
             c for c in model.candidates if c.effect == name and c.at == "all" and model.visible.get(c, True)
         ]
         tried = [f for c in forms if (f := _with(model, best, c)) is not None]
         if not tried:
-            others = ", ".join(dict.fromkeys(c.effect for c in model.candidates if c.at == "all"))
-            raise OptionError("extend", name, f"expected effects that these trials can show, of {others}")
+            raise unknown(name)
         best = min(tried, key=lambda f: f.chi2)
     return _Fitted(
         model=model,

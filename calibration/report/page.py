@@ -25,7 +25,7 @@ from calibration.report._draw_records import Coupon, coupon_errors, draw_coupons
 from calibration.report._tables import HEADINGS, HELD_OUT_HEADINGS, held_out_rows, law_rows
 from calibration.report._template import PAGE
 from calibration.report._words import blind, headline, rule, troubles, unidentified
-from calibration.study.calibration import Calibration
+from calibration.study.calibration import Calibration, shared_notes
 from calibration.study.measurements import Measurements, measurements
 from tisim.view import View
 
@@ -177,7 +177,7 @@ def section(results: Sequence[Calibration], experiment: Experiment) -> Section:
         blind=[sentence for r in results for sentence in blind(r)],
         unidentified=[sentence for r in results for sentence in unidentified(r)],
         troubles=troubles(results),
-        notes=[f"{r.label}: {r.note}" for r in results if r.note],
+        notes=[f"{', '.join(r.label for r in fits)}: {n}" for n, fits in shared_notes(results).items()],
         moved=far_nuisances(chosen, experiment) if chosen else [],
         nuisances=len(chosen.nuisances) if chosen else 0,
         ignored=(*data.ignored, *_averaged(experiment, material)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
@@ -255,6 +255,15 @@ class Calibration:
         )
         more = f"; {self.message}" if self.message else ""
         return f"{name}, G {self.shear_modulus / 1e3:.4g}{sd} kPa{more})"
+
+
+def shared_notes(results: Iterable[Calibration]) -> dict[str, list[Calibration]]:
+    """The fits of each note, since laws that are fitted to the same tests share most notes."""
+    found: dict[str, list[Calibration]] = {}
+    for r in results:
+        if r.note:
+            found.setdefault(r.note, []).append(r)
+    return found
 
 
 def _nan(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -64,6 +64,8 @@ def test_cards_are_what_their_script_writes(monkeypatch: pytest.MonkeyPatch) -> 
         ("  neo-hookean:", "  yeoh:", "key laws.neo-hookean: this key is missing"),
         ("locking: 2.828427", "locking: 0.5", "key laws.arruda-boyce.locking: "),
         ("mu: 30341.0, lam", "mu: -1.0, lam", "key laws.st-venant-kirchhoff.mu: "),
+        ("mu: [20228.0]", "mu: [20.228]", "its shear modulus is 30.342 Pa, and that of neo-hookean"),
+        ("density: 1000.0", "density: 1.07", "key density: input should be greater than or equal to 10"),
     ],
 )
 def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
@@ -74,6 +76,13 @@ def test_bad_cards(old: str, new: str, words: str, tmp_path: Path) -> None:
         load_card("S0", tmp_path)
     assert words in str(caught.value)
     assert str(tmp_path / "S0.yaml") in str(caught.value)
+
+
+def test_cards_are_in_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "S0.yaml").write_text("")
+    for no_folder in (tmp_path / "S0.yaml", tmp_path / "none"):
+        with pytest.raises(InputError, match=f"{no_folder.name}: expected a folder of material cards"):
+            load_card("S0", no_folder)
 
 
 def test_a_law_that_refuses_the_moduli_of_a_card_is_named(

@@ -120,6 +120,30 @@ def test_what_belongs_to_a_form_or_to_one_specimen_is_left_out(tmp_path: Path) -
     assert reasons[2] == "no law of the static simulator has it"
 
 
+OTHER_LAW = effect("law-form", "in_its_place", 1.0, becomes="law", rivals=[])
+
+
+def card_of_another_law(folder: Path, name: str, *more: dict[str, Any]) -> Path:
+    """Card whose diagnosis put Ogden's law in place of the neo-Hookean one."""
+    path = write_card(folder, name, OTHER_LAW, *more)
+    content = yaml.safe_load(path.read_text())
+    content["law"] = "ogden"
+    content["laws"]["ogden"] = {"mu": [2e3, 1e3], "alpha": [3.0, 14.0], "bulk": K}
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def test_a_law_in_place_of_the_base_law_is_the_materials(tmp_path: Path) -> None:
+    card_of_another_law(tmp_path, "S1")
+    card = load_card("S1", tmp_path)
+    made = material_of(card)
+    assert (made.law, made.parameters["alpha"]) == ("ogden", (3.0, 14.0))
+    assert material_of(card, "neo-hookean").law == "neo-hookean"  # what is asked for by name
+    card_of_another_law(tmp_path, "S1", STIFFENING)
+    with pytest.raises(InputError, match="extends neo-hookean by strain-stiffening"):
+        material_of(load_card("S1", tmp_path))
+
+
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"belongs_to": "rig"}, "key effects.0.belongs_to: expected specimen"),
     ({"belongs_to": "camera"}, "key effects.0.belongs_to: expected specimen"),
@@ -208,6 +232,18 @@ def test_the_dry_run_says_what_becomes_of_each_effect(tmp_path: Path, tiny_file:
         "strain-stiffening (c2_over_c1 0.5 +- 0.1; equivalent to taper): taken over as the law yeoh" in text
     )
     assert "not taken over: belongs to the beam's form" in text
+
+
+def test_the_dry_run_names_the_model_of_a_law_that_was_found(tmp_path: Path, tiny_file: Path) -> None:
+    cards = tmp_path / "cards"
+    for name in ("S0", "S1"):
+        card_of_another_law(cards, name)
+    code, text = command(tiny_file, cards, "neo-hookean", "--dry-run")
+    assert code == 0, text
+    assert "not taken over: the card's law ogden has it: give --model ogden" in text
+    code, text = command(tiny_file, cards, "ogden", "--dry-run")
+    assert code == 0, text
+    assert "law-form (in_its_place 1 +- 0.1): taken over as the card's law" in text
 
 
 def test_another_law_is_refused_at_the_command_line(tmp_path: Path, tiny_file: Path) -> None:

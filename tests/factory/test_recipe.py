@@ -147,6 +147,9 @@ BAD: list[tuple[str, str, str]] = [
     (TINY.replace("[S0, S1]", "[]"), "key softness: ", "at least 1 item"),
     (TINY.replace("[S0, S1]", "[../S0]"), "key softness.0: ", "pattern"),
     (TINY.replace("own_sites: 2", "own_sites: 0"), "at least one poke", ""),
+    (TINY.replace("[S0, S1]", "S0"), "key softness: expected a list", "'S0'"),
+    (TINY.replace("radius_mm: 2.5", "radius_mm: 2,5"), "key rod.5: expected a name", "decimals have points"),
+    (TINY.replace("depth_mm: 30", "depth_mm: 0.02"), "protocol.depth_mm: expected a depth in mm", "metres?"),
     # all missing and unknown keys
     (
         TINY.replace("depth_mm: 30, ", "depth: 30, "),

@@ -72,7 +72,7 @@ def predictor(run: Path) -> Predictor:
             "key depth_mm: expected less than the block's height of 32 mm, got 900",
         ),
         ("depth_mm: 2", "depth_mm: [2]", "key depth_mm: "),
-        ("depth_mm: 2", "depth: 2", "key depth: no such key (and 1 more)"),
+        ("depth_mm: 2", "depth: 2", "key depth: no such key; key depth_mm: this key is missing"),
         ("softness: S1", "shear_modulus_kPa: .nan", "key shear_modulus_kPa: "),
         ("softness: S1", "softness: 3", "key softness: "),
         (

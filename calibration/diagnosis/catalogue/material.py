@@ -50,7 +50,8 @@ LAW_FORM = Effect(
     per_unit=1.0,
     belongs_to="specimen",
     sentence="the law has the wrong form for this material",
-    remedy="use the law that is named; a mode of loading that its fit has not seen confirms its form",
+    remedy="use the law that is named: the card has it, and calibration.fit --model LAW --terms N fits it;"
+    " a mode of loading that its fit has not seen confirms its form",
     with_material=True,
 )
 

@@ -51,7 +51,7 @@ def paired_bars(
         axes.barh(rows + shift, upper, height=height, color=AFTER, label="extended")
         _written(axes, rows + shift, upper)
     if noise is not None:
-        axes.axvline(noise, color=INK, lw=1.1, ls="--", zorder=2.5, label="the measurement's own noise")
+        axes.axvline(noise, color=INK, lw=1.1, ls="--", zorder=2.5, label="error of the measurement alone")
     axes.set_yticks(rows, shown)
     axes.set_ylim(rows[-1] + 0.7, -0.7)
     axes.set_xlim(0.0, 1.15 * max(*lower, *(upper or ()), noise or 0.0))

@@ -97,7 +97,8 @@ def homogeneous_figures(model: HomogeneousModel, diagnosis: Diagnosis) -> list[F
             quantity="stress",
             unit=UNIT,
             noise=rms_of(d.sd for d in records),
-            dashed="the points' own error",
+            dashed="the error of a single point, stated or assumed; a misfit below it still counts where"
+            " neighbouring points, or several tests, have it in common",
         ),
     ]
 

@@ -85,10 +85,11 @@ def searched(
 ) -> Searched:
     """First stage of `diagnose`: noise and search.
 
-    before : search of the same measurements with a smaller catalogue, whose converged fits are reused. A
-    misfit within an unstated smooth error (`within_smooth_error`) is not attributed to any cause.
+    before : search of the same measurements with a smaller catalogue, whose converged fits are reused, and
+    whose time counts. A misfit within an unstated smooth error (`within_smooth_error`) is not attributed to
+    any cause.
     """
-    begun = time.monotonic()
+    begun = time.monotonic() if before is None else before.begun
     rules = rules or Rules()
     known = model.settle_noise(noise)
     model.noise_scale = known.scale

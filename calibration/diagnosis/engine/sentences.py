@@ -136,10 +136,14 @@ def what_remains(left: Remainder, unit: tuple[str, float]) -> str:
 
 
 def percent(share: Interval) -> str:
-    """Explained fraction in percent, clipped to 0 to 100, with its interval if that is finite."""
+    """Explained fraction in percent, clipped to 0 to 100, with its interval if that is finite.
+
+    100 is written only of a fraction of 1: beside it stands the misfit that is left.
+    """
 
     def part(x: float) -> str:
-        return f"{100.0 * min(max(x, 0.0), 1.0):.0f}"
+        value = 100.0 * min(max(x, 0.0), 1.0)
+        return f"{value:.0f}" if value == 100.0 or value < 99.5 else f"{min(value, 99.9):.1f}"
 
     if not (math.isfinite(share.low) and math.isfinite(share.high)):
         return f"{part(share.value)} %"

@@ -77,7 +77,8 @@ _REPEATS = {
 
 def _one_less(share: dict[str, float | None]) -> str:
     assert share["value"] is not None
-    return f"{100.0 * min(max(1.0 - share['value'], 0.0), 1.0):.0f} %"
+    left = 100.0 * min(max(1.0 - share["value"], 0.0), 1.0)
+    return f"{left:.0f} %" if left == 0.0 or left > 0.5 else f"{max(left, 0.1):.1f} %"
 
 
 def _cause_row(

@@ -188,13 +188,26 @@ class CompressionModel(HomogeneousModel):
             ),
         ]
 
-    def remarks(self) -> list[str]:
+    def shortcomings(self) -> list[str]:
+        pressed = min(float(r.stretch.min()) for r in self.records if is_compressed(r))
+        held = float(np.exp(self.bonded.log_ratio(np.array([pressed]), {})[0]))
+        return [
+            *super().shortcomings(),
+            f"platens are taken as free of friction; where they hold the ends of a cylinder of {self._size},"
+            f" its force is {held:.2f} times as large at a strain of {1.0 - pressed:.2g}, and the modulus of"
+            " this fit too large by up to as much: calibration.diagnose tests it (platen-bonding)",
+        ]
+
+    @property
+    def _size(self) -> str:
         c = self.bonded.cylinder
-        size = f"{2e3 * c.radius:g} x {1e3 * c.height:g} mm"
+        return f"{2e3 * c.radius:g} x {1e3 * c.height:g} mm"
+
+    def remarks(self) -> list[str]:
         unstated = "" if self.stated else ", since the format does not say"
         found = [
             *super().remarks(),
-            f"cylinders taken as {size} (diameter x height){unstated};"
+            f"cylinders taken as {self._size} (diameter x height){unstated};"
             " only the quotient counts, and only where platens are bonded",
             "platens that are bonded in part are interpolated between free (0) and bonded ones (1), which are"
             " simulated, and up to 1.1, since the simulation has an error; Coulomb friction itself is not"

@@ -46,7 +46,8 @@ from calibration.parameters import Parameters, parametrisation
 Array = NDArray[np.float64]
 
 # K/G of solid rubbers is above 1000 (K some GPa, G below 1 MPa). At 3000 a stress is the incompressible one
-# to 0.1 %; it is not fitted, since a law that misfits would use it to repair its curve. A fit of a law that
+# to 0.1 % up to a stretch of 2, and to 0.5 to 5 % at 8, the more the law stiffens. It is not fitted, since a
+# law that misfits would use it to repair its curve. A fit of a law that
 # holds K/G (`Parametrisation.holding`) has these curves too, whatever its prior says.
 BULK_RATIO = 3000.0
 REMEMBERED = 8192  # stresses of a record

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from calibration.diagnosis.engine.sentences import sentence
+from calibration.diagnosis.engine.sentences import percent, sentence
 from calibration.diagnosis.engine.shares import Interval
 from calibration.measurements._effect import Candidate
 
@@ -30,3 +30,17 @@ def test_a_cause_that_is_certain_is_said_with_its_weight(grip: float, rest: str)
         f"Found in part: there is a grip (grip, {part} of the misfit beyond noise)."
         f" {rest}, which these data cannot identify: void or tilt."
     )
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "said"),
+    [
+        (0.9951, 0.9951, 0.99994, "99.5 % [99.5, 99.9]"),
+        (0.994, 0.8, 1.0, "99 % [80, 100]"),
+        (1.2, -0.1, 1.3, "100 % [0, 100]"),
+    ],
+)
+def test_all_of_a_misfit_is_said_only_where_nothing_is_left(
+    value: float, low: float, high: float, said: str
+) -> None:
+    assert percent(Interval(value=value, low=low, high=high)) == said

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from calibration.diagnosis.rig import read_rig
 from calibration.errors import InputError
 from calibration.experiment import read
 from calibration.experiment.model import BeamTrial
+from calibration.measurements.homogeneous.stress import nominal_stress
 from calibration.measurements.outlines._effect import Situation
 from factory.materials import LAWS, load_card, material_of
 
@@ -94,6 +96,32 @@ def test_a_materials_card_has_its_own_misfit(tmp_path: Path) -> None:
     errors = [content(tmp_path / "cards" / f"{name}.yaml")["model_error"] for name in ("M0", "M1")]
     assert errors[0] < 0.002
     assert errors[1] > 0.01
+
+
+def test_a_law_in_place_of_the_baselines_is_the_cards(tmp_path: Path) -> None:
+    """Coupons of Ogden's law to a stretch of 5 and 2; the time stated is that of both rounds."""
+    ogden = tisim.Material(law="ogden", parameters={"mu": (20e3,), "alpha": (3.5,), "bulk": 1e8})
+    random, trials, tables = np.random.default_rng(3), [], {}
+    for mode, last in (("uniaxial", 5.0), ("equibiaxial", 2.0)):
+        stretch = np.linspace(1.05, last, 30)
+        stress = 1e-3 * nominal_stress(ogden, mode, stretch)  # type: ignore[arg-type]
+        stress = stress * (1.0 + 0.003 * random.standard_normal(30))
+        tables[f"{mode}.csv"] = {"stretch": stretch, "nominal_stress_kPa": stress}
+        entry = coupon_entry(mode, f"{mode}.csv", material="M", mode=mode)
+        trials.append({k: v for k, v in entry.items() if k not in ("stretch_sd", "stress_sd_kPa")})
+    experiment = calibration.read_experiment(write_experiment(tmp_path / "rubber", trials, tables=tables))
+    times: list[float] = []
+    found = calibration.diagnose(
+        experiment, gain=False, workers=1, on_progress=lambda _: times.append(time.monotonic())
+    ).diagnosis
+    assert [c["effect"] for c in found.causes()] == ["law-form"]
+    assert found.seconds > times[-1] - times[0]
+    write_cards(tmp_path / "cards", found, experiment)
+    card = load_card("M", tmp_path / "cards")
+    assert (card.law, card.effects[0].becomes) == ("ogden", "law")
+    assert "law-form (ogden) is the card's law, ogden." in card.provenance
+    made = material_of(card)
+    assert (made.law, made.parameters["alpha"]) == ("ogden", pytest.approx((3.5,), rel=0.05))
 
 
 def test_each_effect_goes_where_it_belongs(tmp_path: Path) -> None:

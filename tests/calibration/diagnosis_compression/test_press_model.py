@@ -73,6 +73,17 @@ def test_only_a_stated_height_is_not_remarked() -> None:
     assert any("20 x 20 mm (diameter x height);" in r for r in known.remarks())
 
 
+def test_a_fit_says_what_it_takes_the_platens_for() -> None:
+    """Bonded to free at a strain of 0.5, by the other solver's table."""
+    model = press_model(both(sliding, strain=ramps(1, top=0.5)))
+    (said,) = (s for s in model.shortcomings() if "free of friction" in s)
+    strain = np.array(TABLE["strains"])
+    held = np.array(TABLE["stress_over_shear_modulus"]["neo-hookean"]) / sliding(strain)
+    ratio = np.interp(0.5, strain, held)
+    assert f"50 x 30 mm, its force is {ratio:.1f}" in said
+    assert "at a strain of 0.5" in said
+
+
 def test_beyond_half_of_the_height_nothing_is_compared() -> None:
     model = press_model(both(sliding, strain=ramps(1, top=0.66)))
     assert all(r.stretch.min() >= 0.5 for r in model.records)

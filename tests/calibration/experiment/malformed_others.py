@@ -205,6 +205,18 @@ CASES: dict[str, Case] = {
         "key trials[poke].force_sd_N:",
         "expected more than 0",
     ),
+    "force sd of another unit": (
+        put("poke", "force_sd_N", 10.0),  # mN
+        YAML,
+        "key trials[poke].force_sd_N:",
+        "expected less than the largest force of pokes/poke.csv in N, 0.5, got 10",
+    ),
+    "depth sd of another unit": (
+        put("poke", "depth_sd_mm", 20.0),  # micrometres
+        YAML,
+        "key trials[poke].depth_sd_mm:",
+        "expected less than the largest depth of",
+    ),
     "force sd's unit": (
         rename("poke", "force_sd_N", "force_sd_mN"),
         YAML,
@@ -255,6 +267,24 @@ CASES: dict[str, Case] = {
         YAML,
         "key trials[pull].stress_sd_kPa:",
         "expected more than 0",
+    ),
+    "stress sd of another unit": (
+        put("coupon", "stress_sd_kPa", 500.0),  # Pa
+        YAML,
+        "key trials[pull].stress_sd_kPa:",
+        "expected less than the largest stress of",
+    ),
+    "stretch sd in percent": (
+        put("coupon", "stretch_sd", 0.2),
+        YAML,
+        "key trials[pull].stretch_sd:",
+        "expected less than the largest strain of",
+    ),
+    "stretch in percent": (
+        lambda s: s.tables[PULL].update(stretch=[100.0, 110.0, 120.0]),
+        PULL,
+        "column stretch:",
+        "is the column in percent",
     ),
     "key without value": (
         put("coupon", "stress_sd_kPa", None),

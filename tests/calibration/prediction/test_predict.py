@@ -296,7 +296,7 @@ def test_what_the_fitted_trials_cannot_tell_widens_the_interval(tmp_path: Path) 
         ({"viscosity": {"kind": "prony", "fractions": [0.3]}}, "key viscosity"),
         ({"viscosity": {"kind": "kelvin"}}, "key viscosity.kind: expected one of prony"),
         ({"law": "ogden"}, "key law: expected one of neo-hookean, got ogden"),
-        ({"viscosty": None}, "key viscosty: expected no such key"),
+        ({"viscosty": None}, "unknown key viscosty: expected viscosity"),
         ({"material": "S9"}, "expected a card of S0, found S9"),
         (
             {"effects": [{"effect": "relaxation", "parameters": {}, "becomes": "viscosity"}]},
@@ -322,6 +322,7 @@ def test_bad_cards_are_one_sentence(
         (["--calibrate", "held", "--predict", ""], "--predict: expected ids of trials, got none"),
         (["--calibrate", "", "--predict", "slow"], "--calibrate: expected ids of trials, got none"),
         (["--calibrate", "held", "--predict", "slow", "--law", "jelly"], "--law jelly"),
+        (["--calibrate", "held", "--predict", "slow", "--extend", "crep"], "--extend crep: expected effects"),
         (
             ["--calibrate", "held", "--predict", "slow", "--specimen-scatter", "0.1"],
             "--specimen-scatter 0.1: expected with cards only",

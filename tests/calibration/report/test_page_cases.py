@@ -47,6 +47,13 @@ def test_coupons_alone(tmp_path: Path) -> None:
     assert "Outlines" not in page.text
 
 
+def test_a_note_of_several_laws_is_shown_once(tmp_path: Path) -> None:
+    results = [calibration(note="free platens"), calibration("ogden", note="free platens")]
+    page = Page(write_report(tmp_path, results, read(coupon_folder(tmp_path / "data"))))
+    assert "neo-hookean, ogden: free platens" in page.text
+    assert page.text.count("free platens") == 1
+
+
 def test_all_fits_failed(tmp_path: Path) -> None:
     results = [failed(), failed("ogden"), failed(material="B")]
     page = Page(write_report(tmp_path, results, read(coupon_folder(tmp_path / "data"))))
