@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -17,10 +17,11 @@ _LONGEST_MM = 1e5
 _UNITS = ("_kg_m3", "_m_s2", "_kPa", "_mm", "_deg", "_s", "_N", "_sd")
 
 
-class Strict(BaseModel):
-    """Base of everything read from YAML: unknown keys, keys without a value, NaN and infinity are refused."""
+class KnownKeys(BaseModel):
+    """Refuses unknown keys with the key that was meant, NaN and infinity."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    may_be_empty: ClassVar[bool] = True  # keys without a value
 
     @model_validator(mode="before")
     @classmethod
@@ -48,11 +49,18 @@ class Strict(BaseModel):
                     {"key": unknown[0], "expected": meant[0], "also": also},
                 )
             for key, value in data.items():
-                if value is None:
+                if value is None and not cls.may_be_empty:
                     raise PydanticCustomError(
                         "no_value", "expected a value, or the key left out", {"key": str(key)}
                     )
         return data
+
+
+class Strict(KnownKeys):
+    """Base of an experiment's files: unknown keys, keys without a value, NaN and infinity are refused."""
+
+    model_config = ConfigDict(strict=True)
+    may_be_empty = False
 
 
 def expected_key(key: str, known: list[str]) -> str:

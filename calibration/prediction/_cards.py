@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from calibration.errors import InputError
-from calibration.experiment._fields import Strict
+from calibration.experiment._fields import KnownKeys
 from calibration.experiment._yaml import sentence
 from calibration.inference import WIDTH
 from calibration.parameters import (
@@ -113,10 +113,8 @@ class _Baseline(_Lenient):
     model_error: NotNegative = 0.0
 
 
-class CardFile(Strict):
+class CardFile(KnownKeys):
     """A material card; keys that a prediction does not need are known, and not looked at."""
-
-    model_config = ConfigDict(strict=False)
 
     material: str
     mixture: Any = None
