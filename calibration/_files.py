@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import unicodedata
+from pathlib import Path
 
+from calibration.errors import InputError
 from tisim.io.whole import whole_name, write_whole
 
 
@@ -12,4 +14,10 @@ def on_any_disk(name: str) -> str:
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
-__all__ = ["on_any_disk", "whole_name", "write_whole"]
+def check_no_experiment(folder: Path) -> None:
+    """InputError for a folder that holds an experiment: results there would stand among what was measured."""
+    if (folder / "experiment.yaml").exists():
+        raise InputError(f"--out {folder}: holds an experiment: expected another folder for the results")
+
+
+__all__ = ["check_no_experiment", "on_any_disk", "whole_name", "write_whole"]

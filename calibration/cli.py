@@ -20,6 +20,7 @@ from rich.live import Live
 from rich.markup import escape
 from rich.table import Table
 
+from calibration._files import check_no_experiment
 from calibration.errors import InputError, OptionError
 from tisim import laws
 from tisim.parallel.termination import terminable
@@ -124,9 +125,10 @@ def _end(sentence: str, code: int) -> NoReturn:
 
 
 def check_folder(folder: Path, result: str, overwrite: bool) -> None:
-    """Refuse a folder that holds a `result` ("diagnosis" for diagnosis.json), unless it may be replaced."""
+    """Refuse the folder of an experiment, and of a `result` ("diagnosis": diagnosis.json) that is to stay."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"--out {folder}: expected a folder, found a file")
+    check_no_experiment(folder)
     if (folder / f"{result}.json").exists() and not overwrite:
         raise InputError(f"--out {folder}: holds a {result} already; add --overwrite to replace it")
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calibration._files import on_any_disk
+from calibration._files import check_no_experiment, on_any_disk
 from calibration.errors import InputError, OptionError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.fit_request import FitRequest
@@ -246,6 +246,7 @@ def _check_folder(folder: Path) -> None:
     """Refuse a folder that holds something else."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: expected a folder to write to")
+    check_no_experiment(folder)
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK):
         raise InputError(f"{folder}: expected a folder that can be written to")

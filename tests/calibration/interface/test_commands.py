@@ -139,6 +139,20 @@ def test_a_law_for_a_kind_of_measurement_that_has_one(
     assert done.stderr == f"error: --law ogden: {kind} has one law only, expected auto\n"
 
 
+@pytest.mark.parametrize(("app", "more"), [(fit, ()), (diagnose, ()), (predict, ("--calibrate", "pull"))])
+def test_results_do_not_go_into_the_folder_of_an_experiment(
+    tmp_path: Path, app: Typer, more: tuple[str, ...]
+) -> None:
+    lab = strip(tmp_path / "lab")
+    before = sorted(lab.rglob("*"))
+    done = CliRunner().invoke(app, [str(lab), *more, "--out", str(lab)])
+    assert done.exit_code == 2, done.output
+    assert (
+        done.stderr == f"error: --out {lab}: holds an experiment: expected another folder for the results\n"
+    )
+    assert sorted(lab.rglob("*")) == before
+
+
 def test_a_second_fit_in_one_folder_waits_outside(tmp_path: Path) -> None:
     folder, out = strip(tmp_path / "lab"), tmp_path / "out"
     with locked(out / "fits"):
