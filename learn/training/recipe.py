@@ -126,7 +126,7 @@ RECIPES: dict[str, Recipe] = {
     "quick": Recipe(
         name="quick",
         split="site",
-        epochs=25,
+        epochs=50,  # of some six steps: copies of a solve count once
         batch=10,
         ema_decay=0.98,
         near_weight=20.0,
