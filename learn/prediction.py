@@ -151,7 +151,10 @@ class PokePrediction:
     def picture(self) -> Any:
         """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
         title = f"force {self._force_text}, {'inside' if self.inside else 'OUTSIDE'} the trained ranges"
-        return draw_prediction(self.scene, self.pokes, self.displacement, radius=self.radius, title=title)
+        marks = None if self.asked is None else self.asked.points
+        return draw_prediction(
+            self.scene, self.pokes, self.displacement, radius=self.radius, title=title, marks=marks
+        )
 
     @property
     def _force_text(self) -> str:

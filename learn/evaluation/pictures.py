@@ -101,16 +101,23 @@ def draw_forces(predictions: Predictions) -> Figure:
 
 
 def draw_prediction(
-    scene: Scene, pokes: Pokes, u: NDArray[np.float32], *, radius: Floats | None, title: str
+    scene: Scene,
+    pokes: Pokes,
+    u: NDArray[np.float32],
+    *,
+    radius: Floats | None,
+    title: str,
+    marks: Floats | None = None,
 ) -> Figure:
     """One predicted poke: section along the push with indenter and inclusion, and a map of the top.
 
-    The map shows the radius of the intervals, or the displacement without intervals.
+    The map shows the radius of the intervals, or the displacement without intervals, and `marks`.
 
     Parameters
     ----------
     scene, pokes : the model's input, one poke.
     u, radius : displacement (n, 3) and radius of its interval (n,) [m].
+    marks : points to mark on the map (m, 3) [m].
     """
     points, start, push = scene.points.numpy(), pokes.start[0].numpy(), pokes.direction[0].numpy()
     depth, top = float(pokes.depth[0]), scene.points[0, 2].item()
@@ -145,6 +152,9 @@ def draw_prediction(
     if columns.any():
         x, y = points[:side, 0] * 1e3, points[::side, 1] * 1e3
         flat.contour(x, y, columns, levels=[0.5], colors="white", linewidths=1, linestyles="--")
+    if marks is not None:
+        flat.plot(*marks[:, :2].T * 1e3, "o", mfc="none", mec="white", markersize=4, label="points asked for")
+        flat.legend(fontsize=8, loc="lower right", facecolor="0.4", labelcolor="white")
     flat.set(ylabel="y [mm]")
     return figure
 

@@ -70,6 +70,14 @@ def test_points_of_the_grid_are_answered_as_the_grid(predictor: Predictor) -> No
     np.testing.assert_allclose(answer.asked.radius, answer.radius[some], rtol=1e-12)
     plain = predictor.predict(POKE)
     assert (plain.asked, plain.force) == (None, answer.force)
+    marked, unmarked = (
+        [line for line in one.picture().axes[1].lines if line.get_label() == "points asked for"]
+        for one in (answer, plain)
+    )
+    np.testing.assert_allclose(
+        marked[0].get_xydata(), 1e3 * predictor.store.setup.points[some, :2], atol=1e-12
+    )
+    assert not unmarked
 
 
 def test_several_points_of_a_cell_are_answered_one_by_one(predictor: Predictor) -> None:
