@@ -8,6 +8,8 @@ its weight's.
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
 
 import tisim
@@ -69,4 +71,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     main()

@@ -20,6 +20,7 @@ K/2 (J - 1)^2 against ln^2 J. Values are Richardson's from three levels with the
 
 from __future__ import annotations
 
+import argparse
 import json
 from pathlib import Path
 from typing import Any
@@ -177,4 +178,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     main()

@@ -8,6 +8,7 @@ observed order. CalculiX's Neo-Hookean is the split one with K/2 (J - 1)^2 (see 
 
 from __future__ import annotations
 
+import argparse
 import json
 
 import numpy as np
@@ -51,4 +52,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     main()

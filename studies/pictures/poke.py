@@ -1,5 +1,6 @@
 """Makes docs/pictures/poke.png, the picture in the README:  python -m studies.pictures.poke  (a minute)."""
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -27,4 +28,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     main()

@@ -4,6 +4,7 @@ The photograph is rendered by the blind laboratory's camera, 25 degrees off the 
 lens that distorts.
 """
 
+import argparse
 from pathlib import Path
 
 import cv2
@@ -47,4 +48,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     main()

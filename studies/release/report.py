@@ -8,6 +8,7 @@ The measurements are real/clamped-beam-dragonskin10/experiment of the folder tha
 
 from __future__ import annotations
 
+import argparse
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -241,6 +242,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     try:
         main()
     except InputError as error:
