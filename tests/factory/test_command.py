@@ -325,7 +325,7 @@ def test_failed_pokes_are_said(
         ),
         (
             ("--model", "ogden", "--materials", "/nowhere"),
-            "/nowhere/S0.yaml: no material card for",
+            "/nowhere: expected a folder of material cards",
         ),
         (("--model", "ogden", "--out", __file__), "is not a dataset of the factory"),
         (("--model", "ogden", "--out", f"{__file__}/a.zarr"), "Not a directory"),

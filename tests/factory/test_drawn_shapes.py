@@ -111,7 +111,7 @@ def test_the_wide_recipe() -> None:
         ({"side_mm": [29, 31]}, "shapes.cube: none of 1000 drawn fits; of the last, its top at"),
         ({"cover_mm": [3, 9]}, "shapes.cube: cover_mm: expected at least the recipe's cover_mm = 8, got 3"),
         ({"cover_mm": [9, 11]}, "shapes.cube: none of 1000 drawn fits; of the last, the"),
-        ({"cover_mm": 9}, "key shapes.0.cover_mm: input should be a valid tuple, got 9"),
+        ({"cover_mm": 9}, "key shapes.0.cover_mm: expected a list, got 9"),
         ({"draw": 0}, "key shapes.0.draw: input should be greater than or equal to 1, got 0"),
         ({"kind": "cone"}, "key shapes.0: expected as kind one of 'cube', 'sphere', 'cylinder'"),
         ({"hight_mm": 3}, "key shapes.0.hight_mm: unknown key"),

@@ -202,7 +202,7 @@ def test_draws_fill_the_block_that_they_are_in(tmp_path: Path) -> None:
         ),
         ({"shapes": [{**STATED, "block_mm": [60, 60, 24]}]}, "shapes.ball: its top at 22 mm leaves less"),
         ({"shapes": [{**STATED, "block_mm": [60, 60]}]}, "key shapes.0.block_mm.2: this key is missing"),
-        ({"shapes": [{**STATED, "block_mm": None}]}, "key shapes.0.block_mm: input should be a valid tuple"),
+        ({"shapes": [{**STATED, "block_mm": None}]}, "key shapes.0.block_mm: expected a list"),
         ({"shapes": [{**STATED, "radius_mm": -1}]}, "key shapes.0.radius_mm: input should be greater than 0"),
         ({"shapes": [{**CUBES, "block_mm": [60, -1, 30]}]}, "key shapes.0.block_mm.1: input should be"),
         ({"border_mm": -1}, "key border_mm: input should be greater than or equal to 0"),
