@@ -63,7 +63,8 @@ def load_points(path: Path | str) -> AskedPoints:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"{path}: no such file of points")
+        there = "this is a folder" if path.is_dir() else "there is none"
+        raise InputError(f"{path}: expected a CSV file of points, {there}")
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:

@@ -162,8 +162,10 @@ def test_wrong_arrays_and_missing_files_are_one_sentence(predictor: Predictor, t
         predictor.predict(POKE, points=np.zeros(3))
     with pytest.raises(InputError, match="point 2: expected on the top face"):
         predictor.predict(POKE, points=np.array([[0.0, 0.0], [np.nan, 0.0]]))
-    with pytest.raises(InputError, match="no such file of points"):
+    with pytest.raises(InputError, match="expected a CSV file of points, this is a folder"):
         load_points(tmp_path)
+    with pytest.raises(InputError, match="expected a CSV file of points, there is none"):
+        load_points(tmp_path / "markers.csv")
     (tmp_path / "latin.csv").write_bytes("x_mm,y_mm,\xe4\n".encode("latin-1"))
     with pytest.raises(InputError, match="UTF-8"):
         load_points(tmp_path / "latin.csv")
