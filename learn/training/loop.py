@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import copy
 import functools
 import math
 import time
@@ -14,17 +12,17 @@ from typing import Any
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor, nn
+from torch import Tensor
 
 from learn.data import Batch, MemoryDataset, Split, Statistics, Store, StreamDataset, statistics
 from learn.data.folds import contact_points, split_of
 from learn.errors import InputError
 from learn.models import MODELS, Scenes, make_model, pokes_of
 from learn.progress import OnProgress, Progress, ignore
-from learn.training.augmentation import Augmentation, Parts
-from learn.training.optimisers import make_optimiser
+from learn.training.augmentation import Augmentation
+from learn.training.optimisation import Optimisation, learning_rate
 from learn.training.process_group import ProcessGroup
-from learn.training.recipe import Loss, Recipe, loss_of
+from learn.training.recipe import Recipe, loss_of
 from learn.training.run_folder import (
     BEST,
     LAST,
@@ -39,7 +37,6 @@ from learn.validity import domain_of
 
 _DIVERGED = 10.0  # ratio to the lowest training loss of an epoch
 _WARM_FRAMES = 600  # for the warm start
-_FLOOR = 0.01  # fraction of the learning rate at the end of a cosine
 
 
 class DivergedError(Exception):
@@ -60,9 +57,10 @@ class Trainer:
 
     Attributes
     ----------
-    epoch, step : epochs and steps done.
+    epoch : epochs done.
     split : frames of the three parts.
-    model, ema : the network that is trained, and the moving average of its weights, which is kept.
+    model : the network that is trained.
+    optimisation : its steps, with the moving average of its weights, which is kept.
     ahead : number of batches that another thread prepares in advance. 0 on a CPU, where training keeps to the
         threads that it was given; on a GPU the neighbourhoods of dropped points take longer than a step.
     """
@@ -99,9 +97,8 @@ class Trainer:
             )
         if kept is None:
             self._warm_start()
-        self.ema = copy.deepcopy(self.model).requires_grad_(False)
-        self.optimiser = make_optimiser(self.model, recipe)
-        self.step, self.epoch, self.best, self.first = 0, 0, math.inf, math.inf
+        self.optimisation = Optimisation(self.model, recipe, self.statistics, group)
+        self.epoch, self.best, self.first = 0, math.inf, math.inf
         if kept is not None:
             self._restore(kept)
         scenes = Scenes.of(store).to(group.device)
@@ -134,9 +131,9 @@ class Trainer:
                 seconds = time.perf_counter() - begun
                 line = {
                     "epoch": self.epoch,
-                    "step": self.step,
+                    "step": self.optimisation.step,
                     **losses,
-                    "learning_rate": self._learning_rate(0.0),
+                    "learning_rate": learning_rate(self.recipe, self.epoch / self.recipe.epochs),
                 }
                 if self.group.is_main:
                     line |= self._validate()
@@ -226,8 +223,9 @@ class Trainer:
         torch.manual_seed(int(key.generate_state(1)[0]))
         done, total = 0, len(self.split.train)
         sums = torch.zeros(3, dtype=torch.float64)
-        for frames, parts in self.augmentation.each(self._batches(), self.step, ahead=self.ahead):
-            loss = self._update(parts, done / total)
+        augmented = self.augmentation.each(self._batches(), self.optimisation.step, ahead=self.ahead)
+        for frames, parts in augmented:
+            loss = self.optimisation.update(parts, (self.epoch + done / total) / self.recipe.epochs)
             values = torch.stack([loss.total, loss.displacement, loss.force]).detach().double().cpu()
             if not bool(torch.isfinite(values).all()):
                 raise DivergedError(f"epoch {self.epoch}: the loss is not finite")
@@ -237,54 +235,16 @@ class Trainer:
         means = [self.group.mean(float(v)) * self.group.world / max(done, 1) for v in sums]
         return dict(zip(("train_loss", "train_displacement_mm", "train_force"), means, strict=True))
 
-    def _update(self, parts: Parts, within: float) -> Loss:
-        for group in self.optimiser.param_groups:
-            group["lr"] = self._learning_rate(within)
-        mixed = self.recipe.mixed_precision and self.group.device.type == "cuda"
-        found = []
-        for scene, prepared, part in parts:
-            with torch.autocast("cuda", torch.bfloat16) if mixed else contextlib.nullcontext():
-                prediction = self.model.decode(self.model.encode(scene, prepared), pokes_of(part))
-            found.append((prediction, part, scene))
-        loss = loss_of(found, self.recipe, self.statistics)
-        self.optimiser.zero_grad(set_to_none=True)
-        loss.total.backward()
-        self.group.average_gradients(self.model)
-        if self.recipe.clip:
-            nn.utils.clip_grad_norm_(self.model.parameters(), self.recipe.clip)
-        self.optimiser.step()
-        self.step += 1
-        self._update_ema()
-        return loss
-
-    def _learning_rate(self, within: float) -> float:
-        """Rate at the fraction `within` of the current epoch: warm-up, then constant or a cosine."""
-        recipe = self.recipe
-        done = (self.epoch + within) / recipe.epochs
-        if done < recipe.warmup:
-            return recipe.learning_rate * max(done / recipe.warmup, _FLOOR)
-        if recipe.schedule == "constant":
-            return recipe.learning_rate
-        turn = (done - recipe.warmup) / (1 - recipe.warmup)
-        return recipe.learning_rate * (_FLOOR + (1 - _FLOOR) * 0.5 * (1 + math.cos(math.pi * turn)))
-
-    @torch.no_grad()
-    def _update_ema(self) -> None:
-        most = self.recipe.ema_decay
-        decay = min(most, (1 + self.step) / (10 + self.step)) if most else 0.0
-        # all parameters in one call: on a GPU one launch for some sixty
-        torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
-
     @torch.no_grad()
     def _validate(self) -> dict[str, float]:
         assert self.validation is not None
-        self.ema.eval()
+        kept = self.optimisation.ema.eval()
         scenes = self.scenes_validation.scenes
-        encode = functools.cache(lambda k: self.ema.encode(scenes[k], self.prepared[k]))
+        encode = functools.cache(lambda k: kept.encode(scenes[k], self.prepared[k]))
         sums, frames = torch.zeros(3, dtype=torch.float64), 0
         for batch in self.validation.batches(64):
             for k, _, part in self.scenes_validation.parts(batch.to(self.group.device)):
-                found = self.ema.decode(encode(k), pokes_of(part))
+                found = kept.decode(encode(k), pokes_of(part))
                 loss = loss_of([(found, part, scenes[k])], self.recipe, self.statistics)
                 distance = (found.displacement - part.displacement).norm(dim=2).mean() * 1e3
                 wrong = ((found.force - part.force).abs() / part.force).mean()
@@ -322,12 +282,12 @@ class Trainer:
         }
         if line["validation_loss"] < self.best:
             self.best = line["validation_loss"]
-            save_checkpoint(self.folder / BEST, {**about, "model": self.ema.state_dict()})
+            save_checkpoint(self.folder / BEST, {**about, "model": self.optimisation.ema.state_dict()})
         state = {
             "model": self.model.state_dict(),
-            "averaged": self.ema.state_dict(),
-            "optimiser": self.optimiser.state_dict(),
-            "step": self.step,
+            "averaged": self.optimisation.ema.state_dict(),
+            "optimiser": self.optimisation.optimiser.state_dict(),
+            "step": self.optimisation.step,
             "best": self.best,
             "first": self.first,
         }
@@ -381,12 +341,12 @@ class Trainer:
     def _restore(self, content: dict[str, Any]) -> None:
         path = self.folder / LAST
         load_weights(self.model, content["model"], path, self.recipe.model)
-        load_weights(self.ema, content["averaged"], path, self.recipe.model)
+        load_weights(self.optimisation.ema, content["averaged"], path, self.recipe.model)
         try:
-            self.optimiser.load_state_dict(content["optimiser"])
+            self.optimisation.optimiser.load_state_dict(content["optimiser"])
         except (ValueError, KeyError, TypeError, RuntimeError) as error:
             raise InputError(
                 f"{path}: not a readable checkpoint ({' '.join(str(error).split())[:120]})"
             ) from None
-        self.step, self.epoch = content["step"], content["epoch"]
+        self.optimisation.step, self.epoch = content["step"], content["epoch"]
         self.best, self.first = content["best"], content["first"]

@@ -130,7 +130,7 @@ def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) ->
 def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    plain = learn.training.loop.loss_of
+    plain = learn.training.optimisation.loss_of
     calls = 0
 
     def broken(*args: object) -> learn.training.recipe.Loss:
@@ -141,7 +141,7 @@ def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
             loss.total * (float("nan") if calls > 3 else 1), loss.displacement, loss.force
         )
 
-    monkeypatch.setattr(learn.training.loop, "loss_of", broken)
+    monkeypatch.setattr(learn.training.optimisation, "loss_of", broken)
     with pytest.raises(DivergedError, match="not finite"):
         _train(folder, TINY, tmp_path / "run")
     kept = load_checkpoint(tmp_path / "run" / "last.pt")
