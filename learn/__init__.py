@@ -6,8 +6,8 @@ The package reads the dataset's file format and imports none of the programs tha
 >>> predictor = learn.load("runs/quick")
 >>> predictor.predict("datasets/scenes/poke.yaml")
 
-The commands are `python -m learn.train`, `learn.evaluate`, `learn.predict`, `learn.export`,
-`learn.page` and `learn.bench`.
+The commands are `python -m learn.train`, `learn.evaluate`, `learn.adapt`, `learn.predict`,
+`learn.export`, `learn.page` and `learn.bench`.
 """
 
 from importlib import metadata as _metadata

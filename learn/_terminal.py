@@ -6,15 +6,21 @@ import contextlib
 import logging
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from typing import NoReturn
 
 import typer
 from rich.console import Console
+from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
 from rich.table import Table
 from rich.text import Text
 
 from learn.errors import InputError
+from learn.progress import OnProgress, Progress
+
+LINE_SECONDS = 20.0  # between lines of progress where the output is no terminal
 
 _PACKAGES = {
     "torch",
@@ -80,6 +86,32 @@ def duration(seconds: float) -> str:
     if seconds < 5400:
         return f"{seconds / 60:.0f} min"
     return f"{seconds / 3600:.1f} h"
+
+
+@contextlib.contextmanager
+def progress_bar(console: Console) -> Iterator[OnProgress]:
+    """Callback that shows progress with the time left: a bar on a terminal, else a line every 20 s."""
+    bar = Bar(
+        BarColumn(),
+        TextColumn("{task.completed:.0f} of {task.total:.0f} steps"),
+        TimeRemainingColumn(),
+        console=console,
+        disable=not console.is_terminal,
+    )
+    task = bar.add_task("steps", total=None)
+    began = line = time.monotonic()
+
+    def update(state: Progress) -> None:
+        nonlocal line
+        bar.update(task, completed=state.done, total=state.total)
+        now = time.monotonic()
+        if not console.is_terminal and now - line > LINE_SECONDS:
+            line = now
+            left = duration((state.total - state.done) * (now - began) / state.done)
+            console.print(f"{state.done:.0f} of {state.total:.0f} steps, about {left} left")
+
+    with bar:
+        yield update
 
 
 def print_table(console: Console, title: str, heads: list[str], rows: list[list[str]]) -> None:

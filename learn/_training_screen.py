@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from learn._terminal import duration
+from learn._terminal import LINE_SECONDS, duration
 
 if TYPE_CHECKING:
     from learn.progress import Progress as State
     from learn.training import Recipe, Trainer
 
-_LINE_SECONDS = 20.0  # between lines where the output is no terminal
-
 
 class TrainingScreen:
-    """Progress of a training: a bar on a terminal, otherwise a line every `_LINE_SECONDS`."""
+    """Progress of a training: a bar on a terminal, otherwise a line every `LINE_SECONDS`."""
 
     def __init__(self, console: Console, folder: Path, recipe: Recipe, *, quiet: bool) -> None:
         self._console, self._folder, self._recipe, self._quiet = console, folder, recipe, quiet
@@ -64,7 +62,7 @@ class TrainingScreen:
         epoch = f"epoch {min(int(state.done) + 1, total)} of {total}"
         self.bar.update(self._task, completed=state.done, epoch=epoch, text=self._text, left=left)
         last = state.done >= total
-        if not self._console.is_terminal and state.values and (now - self._line > _LINE_SECONDS or last):
+        if not self._console.is_terminal and state.values and (now - self._line > LINE_SECONDS or last):
             self._line = now
             self._console.print(f"{state.done:.0f} of {total} epochs: {self._text}, {left}")
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import typer
 
-from learn import bench, evaluate, export, predict, train
+from learn import adapt, bench, evaluate, export, predict, train
 from learn._options import Version
 from learn.page import command as page
 
 app = typer.Typer(
     name="learn",
-    help="Surrogates of the poke response: train, evaluate, predict, export, page, bench.",
+    help="Surrogates of the poke response: train, evaluate, adapt, predict, export, page, bench.",
     add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",
@@ -18,6 +18,7 @@ app = typer.Typer(
 )
 app.command("train", epilog=train.EXAMPLES)(train.main)
 app.command("evaluate", epilog=evaluate.EXAMPLES)(evaluate.main)
+app.command("adapt", epilog=adapt.EXAMPLES)(adapt.main)
 app.command("predict", epilog=predict.EXAMPLES)(predict.main)
 app.command("export", epilog=export.EXAMPLES)(export.main)
 app.command("bench", epilog=bench.EXAMPLES)(bench.main)

@@ -1,4 +1,4 @@
-"""Progress of long work: one callback, `on_progress`, for training and evaluation alike."""
+"""Progress of long work: one callback, `on_progress`, for training, adaptation and evaluation alike."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Progress:
 
     Attributes
     ----------
-    stage : "training" or "evaluation".
+    stage : "training", "adaptation" or "evaluation".
     done, total : epochs, with the fraction of the current one, or steps.
     text : the current step, in words.
     values : the log line of the epoch that has just ended, else None.

@@ -88,6 +88,12 @@ def _one_of_each(store: Store, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return kept
 
 
+def frames_once(store: Store) -> NDArray[np.int64]:
+    """All frames in which the indenter presses, (f,); of pokes that share one solve, those of one."""
+    once = _one_of_each(store, store.presses)
+    return np.flatnonzero(store.presses & once[store.frame_poke])
+
+
 def _in_turn(count: int) -> NDArray[np.int64]:
     """Order of the shapes in which each of the parts in turn has every fifth; their own if they are few."""
     shapes = np.arange(count)
@@ -171,6 +177,11 @@ def split_of_run(store: Store, run: SplitRun) -> Split:
     InputError if the run was trained on it with other parts: when it was a part of what it is now, or by an
     earlier rule. Shapes that the run has seen would count as unseen.
     """
+    if store.uuid == run.uuid and not run.groups["test"]:
+        raise InputError(
+            f"{run.folder}: was adapted to all of {store.location}, so that nothing is left to test; its"
+            " errors at contact points left out are in adaptation.json"
+        )
     split = split_of(store, run.recipe)
     if store.uuid == run.uuid and (split.groups != run.groups or _overlaps(store, split, run)):
         raise InputError(

@@ -160,6 +160,26 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
         mine = np.isin(predictions.poke, part)
         scale = _Scale.fit(predictions.where(~mine), many)
         scores[mine], force[mine] = scale.scores(predictions.where(mine))
+    return _calibrated(_Scale.fit(predictions, many), scores, force, predictions, level)
+
+
+def recalibrated(intervals: Intervals, predictions: Predictions) -> Intervals:
+    """Intervals of these predictions by the error scale of earlier ones, which is not fitted again.
+
+    For predictions of few pokes of one body by a network whose intervals were fitted to many shapes.
+    InputError if there are fewer than two pokes.
+    """
+    if predictions.pokes < LEAST_POKES:
+        raise InputError(too_few(predictions.pokes))
+    scale = _Scale(**{name: getattr(intervals, name) for name in _Scale._fields})
+    return _calibrated(scale, *scale.scores(predictions), predictions, intervals.level)
+
+
+def _calibrated(
+    scale: _Scale, scores: Floats, force: Floats, predictions: Predictions, level: float
+) -> Intervals:
+    """Intervals from the `scores` of points (f, n), and of the `force` of frames (f,)."""
+    pokes = predictions.pokes
     ring, poke = _ring(predictions.away), np.broadcast_to(predictions.poke[:, None], scores.shape)
     anywhere = pooled_quantile(scores.reshape(-1), poke.reshape(-1), level)
     factors = [
@@ -168,11 +188,11 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
     ]
     return Intervals(
         level=level,
-        promised=min(level, len(pokes) / (len(pokes) + 1)),
-        pokes=len(pokes),
+        promised=min(level, pokes / (pokes + 1)),
+        pokes=pokes,
         factors=factors,
         force=pooled_quantile(force, predictions.poke, level),
-        **_Scale.fit(predictions, many)._asdict(),
+        **scale._asdict(),
     )
 
 

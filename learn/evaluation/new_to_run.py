@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learn.data import Split, Store, contact_points, interiors, split_of_run
+from learn.data.folds import frames_once
 from learn.errors import InputError
 from learn.training import Run, check_dataset, open_dataset
+from learn.training.run_folder import Pretrained
 
 
 def parts_of(store: Store, run: Run) -> Split:
@@ -19,22 +21,10 @@ def parts_of(store: Store, run: Run) -> Split:
     """
     if store.uuid == run.uuid:
         return split_of_run(store, run)
-    by_shape, own, pokes = run.recipe.split == "shape", trained_on(run), np.arange(store.pokes)
+    new = _new_to(store, run)
+    if run.pretrained is not None:
+        new &= _new_to(store, run.pretrained)
     names = np.array(store.shapes)[store.shape]
-    if own is not None:
-        data, rows = own
-        key = interiors if by_shape else _points
-        new = ~np.isin(key(store, pokes), key(data, np.unique(data.frame_poke[rows])))
-    elif by_shape:
-        new = ~np.isin(names, run.groups["train"] + run.groups["validation"])
-    elif run.seen:
-        new = ~np.isin(contact_points(store, pokes), list(run.seen))
-    else:
-        raise InputError(
-            f"{run.folder}: it was split by site, and does not say which contact points it was trained on"
-            f" (version of before 2026-11-27), so that none of {store.location} is known to be new: train it"
-            " again"
-        )
     used = store.done & (store.frame_count > 0)
     test = used & new
     if not test.any():
@@ -49,11 +39,35 @@ def parts_of(store: Store, run: Run) -> Split:
     return Split(train=none, validation=none, test=rows, groups=groups)
 
 
-def trained_on(run: Run) -> tuple[Store, NDArray[np.int64]] | None:
+def _new_to(store: Store, run: Run | Pretrained) -> NDArray[np.bool_]:
+    """True for the pokes (p,) that a training has not seen, of its own or of another dataset."""
+    pokes = np.arange(store.pokes)
+    if store.uuid == run.uuid:
+        return np.isin(pokes, store.frame_poke[split_of_run(store, run).test])
+    by_shape, own = run.recipe.split == "shape", trained_on(run)
+    names = np.array(store.shapes)[store.shape]
+    if own is not None:
+        data, rows = own
+        key = interiors if by_shape else _points
+        return ~np.isin(key(store, pokes), key(data, np.unique(data.frame_poke[rows])))
+    if by_shape:
+        return ~np.isin(names, run.groups["train"] + run.groups["validation"])
+    if run.seen:
+        return np.asarray(~np.isin(contact_points(store, pokes), list(run.seen)))
+    raise InputError(
+        f"{run.folder}: it was split by site, and does not say which contact points it was trained on"
+        f" (version of before 2026-11-27), so that none of {store.location} is known to be new: train it"
+        " again"
+    )
+
+
+def trained_on(run: Run | Pretrained) -> tuple[Store, NDArray[np.int64]] | None:
     """The run's own dataset and the frames of its training and validation parts; None if it is not there."""
     try:
         data = open_dataset(run, verify=False)
         check_dataset(run.uuid, run.folder, data)
+        if not run.groups["test"]:  # adapted to all of it
+            return data, frames_once(data)
         split = split_of_run(data, run)
     except InputError:
         return None

@@ -100,6 +100,39 @@ def draw_forces(predictions: Predictions) -> Figure:
     return figure
 
 
+def draw_adaptation(before: Predictions, after: Predictions) -> Figure:
+    """Adaptation of a run: force of four pokes, and both errors against the depth, before and after."""
+    figure = Figure(figsize=(14, 3.8), layout="constrained")
+    axes = figure.subplots(1, 3)
+    pokes = ranked_pokes(before)
+    for k, (name, poke) in enumerate(pokes.items()):
+        for part, style in ((before, ":"), (after, "x")):
+            mine = np.flatnonzero(part.poke == poke)
+            mine = mine[np.argsort(part.depth[mine])]
+            depth = part.depth[mine] * 1e3
+            if part is before:
+                axes[0].plot(depth, part.force[mine], color=f"C{k}", label=f"poke {poke}, {name} as trained")
+            axes[0].plot(depth, part.force_predicted[mine], style, color=f"C{k}")
+    axes[0].set(title="line simulated, dots as trained, crosses adapted", ylabel="force [N]")
+    axes[0].legend(fontsize=8)
+    for part, style, label in ((before, ":", "as trained"), (after, "-", "adapted")):
+        band = np.ceil(part.depth * 1e3 - 1e-6)
+        depths = np.unique(band)
+        mean = [part.distance_mm[band == d].mean() for d in depths]
+        wrong = np.abs(part.force_predicted - part.force) / part.force
+        axes[1].plot(depths, mean, style, color="C0", label=label)
+        axes[2].plot(depths, [100 * wrong[band == d].mean() for d in depths], style, color="C1", label=label)
+    axes[1].set(title="mean error at contact points left out", ylabel="error [mm]")
+    axes[2].set(title="error of the force", ylabel="error [%]")
+    for axis in axes:
+        axis.set(xlabel="depth [mm]")
+        axis.set_ylim(bottom=0)
+        axis.grid(alpha=0.3)
+    for axis in axes[1:]:
+        axis.legend(fontsize=8)
+    return figure
+
+
 def draw_prediction(
     scene: Scene,
     pokes: Pokes,

@@ -36,6 +36,18 @@ LAST, BEST, LOG = "last.pt", "best.pt", "log.jsonl"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Pretrained:
+    """The run that an adapted run was begun from; attributes as those of `Run`."""
+
+    folder: Path
+    recipe: Recipe
+    uuid: str
+    location: str
+    groups: dict[str, list[str]]
+    seen: frozenset[str]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Run:
     """A trained model ready to use.
 
@@ -53,6 +65,8 @@ class Run:
         by now, if the run is still trained.
     domain : domain of validity; None for runs trained before it was recorded (see `known_domain`).
     members : folders of the runs that were joined to this one as an ensemble; empty for one run.
+    pretrained : the run that this one was adapted from (`learn.adaptation`); None for one trained from the
+        start.
     """
 
     folder: Path
@@ -68,6 +82,7 @@ class Run:
     weights: tuple[str, ...]
     domain: Domain | None = None
     members: tuple[Path, ...] = ()
+    pretrained: Pretrained | None = None
 
 
 class _Statistics(BaseModel):
@@ -85,6 +100,17 @@ class _Statistics(BaseModel):
     log_speed_mean: Finite | None = None
 
 
+class _Pretrained(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+    folder: str
+    recipe: dict[str, Any]
+    uuid: str
+    location: str
+    groups: dict[str, list[str]]
+    seen: list[str]
+    weights: str  # sha256 of its best.pt
+
+
 class _Content(BaseModel):
     """Content of every checkpoint; `last.pt` holds more (`_Resumable`)."""
 
@@ -100,6 +126,7 @@ class _Content(BaseModel):
     epoch: Annotated[int, Field(strict=True, ge=0)]
     model: dict[str, torch.Tensor]
     domain: dict[str, Any] | None = None
+    pretrained: _Pretrained | None = None
 
 
 class _Resumable(_Content):
@@ -220,10 +247,34 @@ def load_run(folder: Path | str) -> Run:
         model=model,
         weights=(hashlib.sha256(data).hexdigest(),),
         domain=None if domain is None else Domain.from_dict(domain, str(path)),
+        pretrained=_pretrained(content, path),
     )
 
 
-def open_dataset(run: Run, dataset: Path | str | None = None, *, verify: bool = True) -> Store:
+def _pretrained(content: dict[str, Any], path: Path) -> Pretrained | None:
+    about = content.get("pretrained")
+    if about is None:
+        return None
+    return Pretrained(
+        folder=Path(about["folder"]),
+        recipe=check_recipe(about["recipe"], str(path)),
+        uuid=about["uuid"],
+        location=about["location"],
+        groups=about["groups"],
+        seen=frozenset(about["seen"]),
+    )
+
+
+def check_free(folder: Path) -> None:
+    """Raise InputError if there is a run in the folder already, or it is a file."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: expected the name of a folder, this is a file")
+    for name in (LAST, BEST):
+        if (folder / name).exists():
+            raise InputError(f"{folder}: a run is there already; choose another --out")
+
+
+def open_dataset(run: Run | Pretrained, dataset: Path | str | None = None, *, verify: bool = True) -> Store:
     """Open the dataset of a run, where it was at training or at `dataset`; InputError if it cannot be."""
     try:
         return open_store(run.location if dataset is None else dataset, verify=verify)

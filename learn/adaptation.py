@@ -1,0 +1,264 @@
+"""Adapt a trained run to bodies of one's own, from a few simulated pokes of them.
+
+A surrogate that was trained on many shapes is less accurate on a body with an inclusion, a material law, an
+indenter or a block that it has not seen. Some ten simulated pokes of that body, minutes of simulation, adapt
+it: the network is fine-tuned on them (`learn.training.fine_tuning`), and its intervals are calibrated for
+this body.
+
+Few pokes cannot spare a test part. The errors are therefore those of cross-validation: the contact points are
+divided into parts, and the pokes of each part are predicted by a network that was fine-tuned on the others.
+The network that is kept is fine-tuned on all of them, or is the run's own if fine-tuning does not lower the
+loss in the cross-validation.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from learn.data import MemoryDataset, Store, contact_points
+from learn.data.folds import frames_once
+from learn.errors import InputError
+from learn.evaluation.intervals import Intervals, fit_intervals, force_fault, recalibrated
+from learn.evaluation.intervals_file import load_intervals, save_intervals
+from learn.evaluation.pictures import draw_adaptation
+from learn.evaluation.predictions import predict_part
+from learn.evaluation.summary import Row, summarise
+from learn.metrics import Predictions, join_predictions
+from learn.models import MODELS, Model
+from learn.progress import OnProgress, Progress, ignore
+from learn.training import Recipe, Run, load_run
+from learn.training.fine_tuning import FineTuning, Tuned
+from learn.training.recipe import check_recipe
+from learn.training.run_folder import BEST, check_free, save_checkpoint, write_whole
+from learn.validity import domain_of
+
+PARTS = 5  # of the cross-validation
+LEAST_POINTS = 3
+# What differs from the recipe of the run (studies/learning/own-body.md).
+CHANGES: dict[str, Any] = {
+    "name": "adapt",
+    "split": "site",
+    "fold": 0,
+    "train_softness": None,
+    "train_depth_mm": None,
+    "epochs": 15,
+    "batch": 16,
+    "optimiser": "muon",
+    "learning_rate": 1e-3,
+    "schedule": "cosine",
+    "warmup": 0.1,
+    "ema_decay": 0.95,
+    "data": "memory",
+}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Adaptation:
+    """A run adapted to the pokes of another dataset.
+
+    Attributes
+    ----------
+    run, store, recipe : the run that was begun from, the dataset, and the recipe of the fine-tuning.
+    rows : the frames that were used, of the store.
+    points : number of their contact points.
+    before : predictions of these frames by the run as it was.
+    after : predictions by networks that were fine-tuned on the other parts of the cross-validation.
+    kept : the network that is kept.
+    fine_tuned : True if `kept` is fine-tuned, False if it is the run's own.
+    intervals : intervals for the dataset's bodies; None if a force was predicted to be 0 N or less.
+    """
+
+    run: Run
+    store: Store
+    recipe: Recipe
+    rows: NDArray[np.int64]
+    points: int
+    before: Predictions
+    after: Predictions
+    kept: Tuned
+    fine_tuned: bool
+    intervals: Intervals | None
+
+    @property
+    def rows_of_table(self) -> dict[str, Row]:
+        """Metrics before and after."""
+        return {"as trained": summarise(self.before), "adapted": summarise(self.after)}
+
+    @property
+    def verdict(self) -> str:
+        """One sentence: what the fine-tuning gave on contact points that it was not given."""
+        was, now = self.rows_of_table.values()
+        mean = f"mean error {was['mean'].mean:.3g} -> {now['mean'].mean:.3g} mm"
+        force = f"force error {was['rel force'].mean:.1%} -> {now['rel force'].mean:.1%}"
+        kept = "the adapted network is kept" if self.fine_tuned else "no gain: the run's own network is kept"
+        return f"at contact points left out: {mean}, {force}; {kept}"
+
+    @property
+    def interval_text(self) -> str:
+        """One sentence on the intervals."""
+        if self.intervals is None:
+            return "no intervals: a force was predicted to be 0 N or less"
+        level, promised, pokes = self.intervals.level, self.intervals.promised, self.intervals.pokes
+        few = f", few enough that only {promised:.0%} can be promised" if promised < level else ""
+        return f"{level:.0%} intervals of these bodies, calibrated on {pokes} pokes{few}"
+
+    def save(self, folder: Path | str) -> None:
+        """Write a run's folder: best.pt, intervals.json, adaptation.json, adaptation.png.
+
+        Raises
+        ------
+        InputError
+            If there is a run already.
+        OSError
+            If a file cannot be written.
+        """
+        place = Path(folder)
+        check_free(place)
+        place.mkdir(parents=True, exist_ok=True)
+        write_whole(place / "adaptation.json", (json.dumps(self.as_dict(), indent=1) + "\n").encode())
+        draw_adaptation(self.before, self.after).savefig(place / "adaptation.png", dpi=120)
+        save_checkpoint(place / BEST, self._content())
+        if self.intervals is not None:
+            save_intervals(load_run(place), self.intervals)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Content of adaptation.json."""
+        return {
+            "run": str(self.run.folder),
+            "dataset": self.store.location,
+            "contact_points": self.points,
+            "frames": len(self.rows),
+            "fine_tuned": self.fine_tuned,
+            "metrics": {
+                name: {key: value.mean for key, value in row.items()}
+                for name, row in self.rows_of_table.items()
+            },
+        }
+
+    def _content(self) -> dict[str, Any]:
+        run, store = self.run, self.store
+        points = np.unique(contact_points(store, np.unique(store.frame_poke[self.rows]))).tolist()
+        return {
+            "version": MODELS[run.recipe.model].version,
+            "uuid": store.uuid,
+            "law": store.law,
+            "location": store.address,
+            "recipe": self.recipe.model_dump(mode="json"),
+            "statistics": self.kept.statistics.as_dict(),
+            "groups": {"train": points, "validation": [], "test": []},
+            "seen": points,
+            "epoch": self.recipe.epochs if self.fine_tuned else run.epoch,
+            "domain": domain_of(store, self.rows).model_dump(mode="json"),
+            "model": self.kept.model.cpu().state_dict(),
+            "pretrained": {
+                "folder": str(run.folder),
+                "uuid": run.uuid,
+                "location": run.location,
+                "recipe": run.recipe.model_dump(mode="json"),
+                "groups": run.groups,
+                "seen": sorted(run.seen),
+                "weights": run.weights[0],
+            },
+        }
+
+
+def adapt_recipe(run: Run, changes: Mapping[str, Any] | None = None, where: str = "adapt") -> Recipe:
+    """The run's recipe with `CHANGES` for fine-tuning, and further ones; InputError names a wrong key."""
+    return check_recipe({**run.recipe.model_dump(), **CHANGES, **(changes or {})}, where)
+
+
+def adapt(
+    run: Run,
+    store: Store,
+    *,
+    recipe: Recipe | None = None,
+    rows: NDArray[np.int64] | None = None,
+    device: torch.device | str = "cpu",
+    on_progress: OnProgress = ignore,
+) -> Adaptation:
+    """Adapt a run to the pokes of another dataset.
+
+    Parameters
+    ----------
+    run : the run to begin from; it is left as it is.
+    store : dataset of the body, or bodies, to adapt to.
+    recipe : of the fine-tuning; by default `adapt_recipe` of the run.
+    rows : frames of the store to use; by default all, of pokes that share a solve one.
+    device : where the networks are trained.
+    on_progress : called after each step.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than three contact points, or the network does not take the dataset's inputs.
+    DivergedError
+        If a fine-tuning diverges.
+    """
+    chosen = recipe or adapt_recipe(run)
+    used = frames_once(store) if rows is None else rows
+    tuning = FineTuning(run, store, chosen, device=device)
+    keys = contact_points(store, store.frame_poke[used])
+    points = np.unique(keys)
+    if len(points) < LEAST_POINTS:
+        raise InputError(
+            f"{store.location}: {len(points)} contact points, expected {LEAST_POINTS} or more to adapt to"
+        )
+    order = np.random.default_rng(chosen.seed).permutation(points)
+    parts = [np.isin(keys, part) for part in np.array_split(order, min(PARTS, len(order)))]
+    steps = _Steps([tuning.steps(used[~part]) for part in parts] + [tuning.steps(used)], on_progress)
+
+    def predicted(model: Model, part: NDArray[np.bool_]) -> Predictions:
+        return predict_part(model, tuning.scenes, MemoryDataset(store, used[part]))
+
+    own = run.model.to(device)
+    before = join_predictions([predicted(own, part) for part in parts])
+    run.model.cpu()
+    after = join_predictions(
+        [predicted(tuning.train(used[~part], on_step=steps.next).model, part) for part in parts]
+    )
+    better = _gain(before, after) < 0.0
+    kept = tuning.train(used, on_step=steps.next) if better else Tuned(run.model, run.statistics)
+    judged = after if better else before
+    return Adaptation(
+        run=run,
+        store=store,
+        recipe=chosen,
+        rows=used,
+        points=len(points),
+        before=before,
+        after=after,
+        kept=kept,
+        fine_tuned=better,
+        intervals=None if force_fault(judged) else _intervals(run, judged),
+    )
+
+
+def _gain(before: Predictions, after: Predictions) -> float:
+    """Mean of the logarithms of the ratios of mean error and force error; negative if they fall."""
+    first, then = summarise(before), summarise(after)
+    return float(np.mean([np.log(then[key].mean / first[key].mean) for key in ("mean", "rel force")]))
+
+
+def _intervals(run: Run, predictions: Predictions) -> Intervals:
+    """Intervals from pokes that the networks had not seen, by the run's error scale if it has intervals."""
+    known = load_intervals(run)
+    return fit_intervals(predictions) if known is None else recalibrated(known, predictions)
+
+
+class _Steps:
+    """Progress over the steps of all networks."""
+
+    def __init__(self, each: list[int], on_progress: OnProgress) -> None:
+        self._done, self._total, self._on_progress = 0, sum(each), on_progress
+
+    def next(self) -> None:
+        self._done += 1
+        self._on_progress(Progress(stage="adaptation", done=self._done, total=self._total))
