@@ -17,7 +17,9 @@ Simulate some pokes of a body (the recipe states its inclusion, indenter and blo
 
   python -m factory.build --model ogden --recipe my-body.yaml --out my-body.zarr
 
-  python -m learn.adapt runs/fast-invariant-gnn-ogden-0-0 my-body.zarr --out runs/my-body
+  python -m learn.adapt covers my-body.zarr --out runs/my-body
+
+covers comes with tisim; the folder of any run of one's own can stand in its place.
 
 The result is a run like others:
 
@@ -28,7 +30,12 @@ Exit codes: 0 done, 1 diverged, 2 bad input, 130 stopped by Ctrl-C (nothing is w
 
 
 def main(
-    run: Annotated[Path, typer.Argument(help="Folder of the run to begin from.", metavar="RUN")],
+    run: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder of the run to begin from, or covers, a network that comes with tisim.", metavar="RUN"
+        ),
+    ],
     dataset: Annotated[str, typer.Argument(help="Dataset of the body: a folder, a zip or an fsspec URL.")],
     out: Annotated[Path, typer.Option(help="Folder of the adapted run.")] = Path("runs/adapted"),
     epochs: Annotated[int | None, typer.Option(help="Passes over the pokes. Default: 15.")] = None,
@@ -44,13 +51,14 @@ def main(
         from learn.adaptation import adapt, adapt_recipe
         from learn.data import open_store
         from learn.evaluation.report import full_table
+        from learn.pretrained import folder_of
         from learn.training import DivergedError, load_run, make_device
         from learn.training.run_folder import check_free
 
         load_plugins(plugin or [])
         set_threads(threads)
         check_free(out)
-        begun = load_run(run)
+        begun = load_run(folder_of(run))
         changes = {k: v for k, v in (("epochs", epochs), ("seed", seed)) if v is not None}
         recipe = adapt_recipe(begun, changes, "the command line")
         store = open_store(dataset)

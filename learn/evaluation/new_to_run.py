@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learn.data import Split, Store, contact_points, interiors, split_of_run
-from learn.data.folds import frames_once
 from learn.errors import InputError
 from learn.training import Run, check_dataset, open_dataset
 from learn.training.run_folder import Pretrained
@@ -20,6 +19,11 @@ def parts_of(store: Store, run: Run) -> Split:
     shapes are identified by their names. InputError if nothing is new.
     """
     if store.uuid == run.uuid:
+        if not run.groups["test"]:
+            raise InputError(
+                f"{run.folder}: was adapted to all of {store.location}, so that nothing is left to test; its"
+                " errors at contact points left out are in adaptation.json"
+            )
         return split_of_run(store, run)
     new = _new_to(store, run)
     if run.pretrained is not None:
@@ -66,8 +70,6 @@ def trained_on(run: Run | Pretrained) -> tuple[Store, NDArray[np.int64]] | None:
     try:
         data = open_dataset(run, verify=False)
         check_dataset(run.uuid, run.folder, data)
-        if not run.groups["test"]:  # adapted to all of it
-            return data, frames_once(data)
         split = split_of_run(data, run)
     except InputError:
         return None

@@ -165,6 +165,14 @@ def test_nothing_is_left_to_test_on_the_body(adapted: Path) -> None:
     assert "nothing is left to test" in _refused("evaluate", adapted)
 
 
+def test_it_is_exported_and_shown_as_a_page(adapted: Path, tmp_path: Path) -> None:
+    exported = call(app, "export", adapted, "--out", tmp_path / "onnx")
+    assert exported.exit_code == 0, exported.output
+    page = call(app, "page", adapted, "--out", tmp_path / "poke.html")
+    assert page.exit_code == 0, page.output
+    assert "0 simulated pokes" in page.output
+
+
 def test_the_command_writes_a_run_and_its_pictures(run: Run, body: Path, tmp_path: Path) -> None:
     out = tmp_path / "run"
     done = call(app, "adapt", run.folder, body, "--out", out, "--epochs", 1, "--threads", 1)

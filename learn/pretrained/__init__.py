@@ -1,0 +1,23 @@
+"""Trained networks that come with the package, to be adapted to bodies of one's own (`learn.adapt`).
+
+Each is the folder of a run: `best.pt`, `intervals.json`, and `card.md`, which states the data, the training,
+the accuracy and the range of validity. Their datasets are not part of the package, so that they are not asked
+themselves.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_HERE = Path(__file__).parent
+
+
+def names() -> list[str]:
+    """Names of the networks."""
+    return sorted(path.parent.name for path in _HERE.glob("*/best.pt"))
+
+
+def folder_of(name: str | Path) -> Path:
+    """Folder of a run: `name` itself, or that of the network of this name if there is no such folder."""
+    path = Path(name)
+    return _HERE / path if str(path) in names() and not path.exists() else path
