@@ -1,15 +1,19 @@
 """Fine-tuning: a trained network goes on learning, from the few pokes of another dataset.
 
-All weights are trained, from those of the run, for few steps. These are too few to learn that all forces are
-larger by a factor, as those of another law are: the unit of the force is corrected by that factor first. The
-closed form and the other statistics stay those of the run. There is no validation part, which few pokes
-cannot spare: the last average of the weights is kept, and `learn.adaptation` measures it by cross-validation.
+All weights are trained, from those of the run, at a low rate and for few epochs. These are too few to learn
+that all forces are larger by a factor, as those of another law are: the unit of the force is corrected by
+that factor first. The closed form and the other statistics stay those of the run.
+
+How long is a question of the pokes: where they are few and the run is right already, more epochs do harm. The
+network is therefore given after several numbers of epochs (`stages`), among which `learn.adaptation` chooses
+by cross-validation; there is no validation part, which few pokes cannot spare.
 """
 
 from __future__ import annotations
 
+import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -53,12 +57,20 @@ class FineTuning:
         self.scenes = Scenes.of(store).to(self._group.device)
         self._prepared = [run.model.prepare(scene) for scene in self.scenes.scenes]
 
-    def steps(self, rows: NDArray[np.int64]) -> int:
-        """Number of steps of `train` on these frames."""
-        return self._recipe.epochs * math.ceil(len(rows) / self._recipe.batch)
+    def steps(self, rows: NDArray[np.int64], epochs: int) -> int:
+        """Number of steps of so many epochs on these frames."""
+        return epochs * math.ceil(len(rows) / self._recipe.batch)
 
-    def train(self, rows: NDArray[np.int64], *, on_step: Callable[[], None] = lambda: None) -> Tuned:
-        """The run's network after training on these frames, on the device.
+    def stages(
+        self, rows: NDArray[np.int64], epochs: Sequence[int], *, on_step: Callable[[], None] = lambda: None
+    ) -> Iterator[Tuned]:
+        """The run's network after each of these numbers of epochs on these frames.
+
+        Parameters
+        ----------
+        rows : frames of the store.
+        epochs : increasing numbers of epochs; after 0 only the unit of the force is corrected.
+        on_step : called after each step.
 
         Raises
         ------
@@ -78,15 +90,17 @@ class FineTuning:
         augmentation = Augmentation(
             store, recipe, rows, scenes=scenes, prepared=self._prepared, prepare=model.prepare
         )
-        steps = self.steps(rows)
-        for epoch in range(recipe.epochs):
-            batches = data.batches(recipe.batch, seed=recipe.seed, epoch=epoch)
-            for _, parts in augmentation.each(batches, optimisation.step):
-                loss = optimisation.update(parts, optimisation.step / steps)
-                if not bool(torch.isfinite(loss.total)):
-                    raise DivergedError(f"step {optimisation.step}: the loss is not finite")
-                on_step()
-        return Tuned(optimisation.ema.eval(), statistics)
+        total, epoch = self.steps(rows, recipe.epochs), 0
+        for last in epochs:
+            while epoch < last:
+                batches = data.batches(recipe.batch, seed=recipe.seed, epoch=epoch)
+                for _, parts in augmentation.each(batches, optimisation.step):
+                    loss = optimisation.update(parts, optimisation.step / total)
+                    if not bool(torch.isfinite(loss.total)):
+                        raise DivergedError(f"step {optimisation.step}: the loss is not finite")
+                    on_step()
+                epoch += 1
+            yield Tuned(copy.deepcopy(optimisation.ema).eval(), statistics)
 
     @torch.no_grad()
     def _log_ratio(self, data: MemoryDataset) -> float:
