@@ -34,14 +34,16 @@ from learn.evaluation.summary import Row, summarise
 from learn.metrics import Predictions, join_predictions
 from learn.models import MODELS, Model
 from learn.progress import OnProgress, Progress, ignore
-from learn.training import Recipe, Run, load_run
+from learn.training import Recipe, Run, known_domain, load_run
 from learn.training.fine_tuning import FineTuning, Tuned
 from learn.training.recipe import check_recipe
 from learn.training.run_folder import BEST, check_free, save_checkpoint, write_whole
-from learn.validity import domain_of
+from learn.validity import Domain, domain_of
 
 PARTS = 5  # of the cross-validation
 LEAST_POINTS = 3
+# quantities of the contact, not of the body: their trained ranges stay those of the run as well
+OF_CONTACT = ("angle_deg", "cover_mm", "depth_over_cover", "site_to_side_mm")
 # What differs from the recipe of the run (studies/learning/own-body.md).
 CHANGES: dict[str, Any] = {
     "name": "adapt",
@@ -49,7 +51,7 @@ CHANGES: dict[str, Any] = {
     "fold": 0,
     "train_softness": None,
     "train_depth_mm": None,
-    "epochs": 16,
+    "epochs": 8,
     "batch": 16,
     "optimiser": "adam",
     "learning_rate": 3e-4,
@@ -93,6 +95,24 @@ class Adaptation:
     def rows_of_table(self) -> dict[str, Row]:
         """Metrics before and after."""
         return {"as trained": summarise(self.before), "adapted": summarise(self.after)}
+
+    @property
+    def domain(self) -> Domain:
+        """Domain of validity: of indenter, block, inclusion, law and depth that of the pokes.
+
+        Of where and from which side the body is indented it is that of the run as well: few pokes leave much of
+        these ranges out, and the network has learned them.
+        """
+        own = domain_of(self.store, self.rows)
+        known = known_domain(self.run, self.store)
+        if known is None:
+            return own
+        wider = {key: known.ranges[key] for key in OF_CONTACT if key in known.ranges and key in own.ranges}
+        hull = {
+            key: (min(low, own.ranges[key][0]), max(high, own.ranges[key][1]))
+            for key, (low, high) in wider.items()
+        }
+        return own.model_copy(update={"ranges": {**own.ranges, **hull}})
 
     @property
     def verdict(self) -> str:
@@ -165,7 +185,7 @@ class Adaptation:
             "groups": {"train": points, "validation": [], "test": []},
             "seen": points,
             "epoch": self.epochs or 0,
-            "domain": domain_of(store, self.rows).model_dump(mode="json"),
+            "domain": self.domain.model_dump(mode="json"),
             "model": self.kept.model.cpu().state_dict(),
             "pretrained": {
                 "folder": str(run.folder),

@@ -25,7 +25,7 @@ from learn.evaluation import Intervals, coverage, load_intervals, predict_part, 
 from learn.metrics import Predictions
 from learn.models import Model, Scenes
 from learn.training import Run, load_run
-from learn.validity import Domain, domain_of, frame_distances
+from learn.validity import Domain, frame_distances
 
 TESTED = 6  # contact points
 GIVEN = (4, 10)  # two of the numbers of contact points to adapt to
@@ -107,7 +107,7 @@ def lines_of(run: Run, store: Store) -> list[Line]:
             given,
             _predicted(found.kept.model, store, test),
             store=store,
-            domain=domain_of(store, mine),
+            domain=found.domain,
             intervals=found.intervals,
             validated=(after["mean"].mean, 100 * after["rel force"].mean),
             seconds=seconds,

@@ -23,6 +23,7 @@ from learn.progress import Progress
 from learn.training import Run, load_run
 from learn.training.fine_tuning import FineTuning, Tuned
 from learn.training.run_folder import load_checkpoint, save_checkpoint
+from learn.validity import domain_of
 from tests.learn.commands import call, refused, train_small
 from tests.learn.small_store import leave_out, write_manifest, write_store
 
@@ -150,11 +151,20 @@ def test_intervals_keep_the_error_scale_of_the_run(run: Run, body: Path, tmp_pat
     assert found.intervals.factors != own.factors
 
 
-def test_the_range_of_validity_is_that_of_the_body(adapted: Path, run: Run) -> None:
-    own = load_run(adapted)
-    assert own.domain is not None
-    assert run.domain is not None
-    assert own.domain.ranges["inclusion_width_mm"] != run.domain.ranges["inclusion_width_mm"]
+def test_the_range_of_validity_is_that_of_the_body_and_of_both_in_the_contact(
+    adapted: Path, run: Run, body: Path
+) -> None:
+    found, before = load_run(adapted).domain, run.domain
+    assert found is not None
+    assert before is not None
+    store = open_store(body)
+    own = domain_of(store, frames_once(store))
+    for key in ("inclusion_width_mm", "depth_mm", "rod_radius_mm"):
+        assert found.ranges[key] == own.ranges[key]
+    assert found.ranges["inclusion_width_mm"] != before.ranges["inclusion_width_mm"]
+    for key in ("angle_deg", "cover_mm", "site_to_side_mm"):
+        both = before.ranges[key], own.ranges[key]
+        assert found.ranges[key] == (min(low for low, _ in both), max(high for _, high in both))
 
 
 def test_pretraining_is_no_test_part_either(adapted: Path, trained_on: Path, run: Run) -> None:
