@@ -166,9 +166,9 @@ def _write_cylinders(folder: Path, found: Mapping[str, Path]) -> None:
 register(
     Source(
         name="ecoflex-cylinders",
-        about="Cylinders of Smooth-On Ecoflex 00-10, 00-30 and 00-50, 50 mm wide and 30 mm high, pressed by"
-        " two thirds at 10 mm/min; five tests of one sample of 00-30, one of the others. Not stated: whether"
-        " the platens were lubricated, the pause between tests, errors.",
+        about="Cylinders of Smooth-On Ecoflex 00-10, 00-30 and 00-50, 50 mm wide and 30 mm high, compressed"
+        " by two thirds at 10 mm/min; five tests of one sample of 00-30, one of the others. Not stated:"
+        " whether the platens were lubricated, the pause between tests, errors.",
         cite="Dawood et al., tissue-phantom-material-database, 2026 (CITATION.cff beside the files)",
         licence="CC BY 4.0",
         licence_file="DATA_LICENSE.md",

@@ -83,8 +83,8 @@ def main(
         str | None,
         typer.Option(
             help="Relaxation beside the law, from tests over time (a column time_s, photographs at several"
-            " times, released bars): prony (the data choose the number of terms), prony:1 to prony:3, or"
-            " prony:spectrum (two stated times a decade). Moduli are then long-time ones."
+            " times, released cantilevers): prony (the data choose the number of terms), prony:1 to prony:3,"
+            " or prony:spectrum (two stated times a decade). Moduli are then long-time ones."
         ),
     ] = None,
     damage: Annotated[

@@ -14,10 +14,12 @@ from importlib.machinery import PathFinder
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+
+from tisim._options import Version
 
 GROUP = "tisim.verbs"
 
@@ -91,21 +93,8 @@ class _Verbs(TyperGroup):
 app = typer.Typer(cls=_Verbs, rich_markup_mode="rich", pretty_exceptions_enable=False, no_args_is_help=True)
 
 
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        import tisim
-
-        typer.echo(f"tisim {tisim.__version__}")
-        raise typer.Exit
-
-
 @app.callback()
-def door(
-    version: Annotated[
-        bool,
-        typer.Option("--version", help="Show the version and exit.", callback=_show_version, is_eager=True),
-    ] = False,
-) -> None:
+def door(version: Version = False) -> None:
     """Soft tissue: from measurements to a calibrated simulator, a dataset and a surrogate. Each verb is also
     `python -m PACKAGE.VERB`, and answers --help."""
     del version

@@ -154,7 +154,9 @@ class Beam:
     section : Circle or Rectangle
     supports : "clamped-free" or "clamped-clamped"
     grip_length : float
-        Length held in each grip, where all nodes are fixed [m].
+        Length held in each grip [m]. It does not change the result: all of a beam that is in a grip is fixed,
+        so the structured mesh begins at the grip's face, x = 0 (`tisim.mesh.beam_mesh(with_grips=True)` also
+        meshes what is behind it). A beam that is held only behind the grip's face has a longer `length`.
     gravity : (float, float, float)
         Acceleration of gravity [m/s2].
     tip_force : (float, float, float)

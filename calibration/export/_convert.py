@@ -13,11 +13,13 @@ from calibration.export._forms import Form, exact, isochoric_twin
 from calibration.export._response import (
     MODES,
     Difference,
+    Stability,
     Stress,
     compare,
     nominal,
     percent,
     pressure_difference,
+    stability,
     stress_of,
     stretches_of,
     worst,
@@ -44,6 +46,9 @@ class Conversion:
         Relative difference of pressure where the volume is 1 % smaller.
     poisson : float or None
         Poisson's ratio of the card, where the form has a smaller one.
+    unstable : tuple of Stability
+        Tests in which a law that stands for another one is not stable, within or little beyond the stretches
+        that were asked for.
     """
 
     form: Form
@@ -51,6 +56,7 @@ class Conversion:
     differences: tuple[Difference, ...]
     pressure: float
     poisson: float | None = None
+    unstable: tuple[Stability, ...] = ()
 
 
 def convert(
@@ -125,6 +131,8 @@ def convert(
             f" {percent(off.rms)} off in {off.mode} tests between stretches of {off.low:.3g} and"
             f" {off.high:.3g}, and at most {percent(most_loss)} is accepted (--most-loss)"
         )
+    if best.how == "fit" and best.form.kind != "arruda-boyce":  # which is stable as far as its chains reach
+        return replace(best, unstable=stability(best.form.stress, low, high))
     return best
 
 

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 Stress = Callable[[Array], Array]  # principal stretches (n, 3) to principal nominal stresses (n, 3) [Pa]
 
 POINTS = 41  # of each curve
+BEYOND = 1.5  # of the logarithms of the stretches: so far a body may strain beyond the range, in a small part
 MODES = ("uniaxial", "equibiaxial", "planar")
 # which stretches are the test's, which the free one's, which stay 1
 _DRIVEN = {"uniaxial": (0,), "equibiaxial": (0, 1), "planar": (0,)}
@@ -84,8 +85,31 @@ def stress_of(material: Material) -> Stress:
     return stress
 
 
+@dataclass(frozen=True, kw_only=True)
+class Stability:
+    """Stretches of a test between which a law is stable in Drucker's sense.
+
+    Attributes
+    ----------
+    mode : str
+    below, above : float or None
+        The stretches nearest to 1 at which it no longer is; None where it is, as far as was looked.
+    """
+
+    mode: str
+    below: float | None
+    above: float | None
+
+
 def nominal(stress: Stress, mode: str, stretches: Array) -> Array:
-    """Nominal stress along axis 1 [Pa], the free sides without stress, (n,); NaN where none is found.
+    """Nominal stress along axis 1 [Pa], the free sides without stress, (n,); NaN where none is found."""
+    l = _principal(stress, mode, stretches)
+    found = np.isfinite(l.sum(axis=1))
+    return np.where(found, stress(np.where(found[:, None], l, 1.0))[:, 0], np.nan)
+
+
+def _principal(stress: Stress, mode: str, stretches: Array) -> Array:
+    """Principal stretches (n, 3) of a test, the free sides without stress; NaN where none is found.
 
     The free stretch by Newton's method on its logarithm, from constant volume.
     """
@@ -107,8 +131,50 @@ def nominal(stress: Stress, mode: str, stretches: Array) -> Array:
         t = t + move
         if not np.nanmax(np.abs(move), initial=0.0) > 1e-11:
             break
-    l[:, free] = np.exp(np.where(np.isfinite(t), t, 0.0))[:, None]
-    return np.where(np.isfinite(t), stress(l)[:, 0], np.nan)
+    l[:, free] = np.exp(t)[:, None]
+    return l
+
+
+def stability(stress: Stress, low: float, high: float) -> tuple[Stability, ...]:
+    """The tests in which a law loses its stability in Drucker's sense, none where it keeps it.
+
+    The tangent d tau_i / d ln(lambda_j) of the principal Kirchhoff stresses has to be positive definite;
+    where the free sides find no equilibrium, it is not. Simple shear is a planar test that is rotated.
+
+    Parameters
+    ----------
+    stress : callable
+    low, high : float
+        Principal stretches; `BEYOND` times their logarithms are looked at.
+    """
+    found = []
+    for mode in MODES:
+        at = stretches_of(mode, low**BEYOND, high**BEYOND)
+        l = _principal(stress, mode, at)
+        exists = np.isfinite(l.sum(axis=1))
+        soft = _softest(stress, np.where(exists[:, None], l, 1.0)) <= 0.0
+        lost = at[~exists | soft]
+        below, above = lost[lost < 1.0], lost[lost > 1.0]
+        if lost.size:
+            found.append(
+                Stability(
+                    mode=mode,
+                    below=float(below.max()) if below.size else None,
+                    above=float(above.min()) if above.size else None,
+                )
+            )
+    return tuple(found)
+
+
+def _softest(stress: Stress, l: Array) -> Array:
+    """Least eigenvalue of the tangent d tau_i / d ln(lambda_j) [Pa] at principal stretches (n, 3)."""
+    step, tangent = 1e-5, np.empty((len(l), 3, 3))
+    for j in range(3):
+        up, down = l.copy(), l.copy()
+        up[:, j] *= np.exp(step)
+        down[:, j] *= np.exp(-step)
+        tangent[:, :, j] = (up * stress(up) - down * stress(down)) / (2.0 * step)
+    return np.asarray(np.linalg.eigvalsh(0.5 * (tangent + tangent.swapaxes(1, 2)))[:, 0], dtype=np.float64)
 
 
 def stretches_of(mode: str, low: float, high: float) -> Array:

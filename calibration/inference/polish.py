@@ -152,7 +152,8 @@ class _Descent:
             )
         except _EndedError as end:
             return str(end)
-        return f"no step lowers chi-square, though {self.promise:.2g} was promised"
+        predicted = f"although the linearised model predicts a decrease of {self.promise:.2g}"
+        return f"no step lowers chi-square, {predicted}"
 
     def _residuals(self, u: Array) -> Array:
         if not np.array_equal(u, self._seen[0]):
@@ -175,7 +176,8 @@ class _Descent:
         gained = max(self._costs[-STALLED - 1 :]) - self.cost
         if self.steps > STALLED and gained < self._little:
             raise _EndedError(
-                f"{STALLED} steps lowered chi-square by {gained:.2g}, though {self.promise:.2g} was promised"
+                f"{STALLED} steps lowered chi-square by {gained:.2g} in all, although the linearised model"
+                f" predicts a decrease of {self.promise:.2g}"
             )
         if self.steps >= self._most:
             raise _EndedError(f"not converged in {self._most} steps")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -65,24 +66,82 @@ class Asker(Protocol):
         """True if something implausible is meant; name: of the check."""
         ...
 
+    @property
+    def lacks(self) -> bool:
+        """True if an answer is missing, and another value stands in for it."""
+        ...
+
+    def complete(self) -> None:
+        """Raise InputError if an answer is missing."""
+        ...
+
+
+# text of a value that any question takes: for keys that are missing, so that those behind them are found too
+_STAND_INS = ("1", "1, 1", "1, 1, 1", "m: 1, 1, 1", "s", "mm", "N", "kPa")
+
 
 @dataclass(frozen=True)
 class Nobody:
-    """An answers file that has to say everything that has no default."""
+    """An answers file that has to say everything that has no default.
+
+    Attributes
+    ----------
+    path : Path
+    missing : dict
+        Text of the question by the key that is missing.
+    behind : set of str
+        Keys that hang on a missing answer, and beginnings of such: which of them are asked is not known yet.
+    """
 
     path: Path
+    missing: dict[str, str] = field(default_factory=dict)
+    behind: set[str] = field(default_factory=set)
 
     @property
     def place(self) -> str:
         return str(self.path)
 
+    @property
+    def lacks(self) -> bool:
+        return bool(self.missing)
+
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
-        if question.default is None:
-            raise InputError(f"{self.path}: missing key {where}.{question.key}: expected {question.text}")
-        return question.default, True
+        if question.default is not None:
+            return question.default, True
+        key = f"{where}.{question.key}"
+        value = _stand_in(question)
+        if not any(key == k or key.startswith(f"{k}.") for k in self.behind):
+            self.missing[key] = question.text
+        self.behind.add(key)
+        if question.key.startswith("columns."):
+            self.behind.add(f"{where}.units.{value}")
+        elif question.key == "material":
+            self.behind.add(f"materials.{value}")
+        return value, False
 
     def confirm(self, where: str, name: str, sentence: str) -> bool:
         raise InputError(f"{self.path}: key {where}: {sentence} (if it is right, say so: accept: [{name}])")
+
+    def complete(self) -> None:
+        if not self.missing:
+            return
+        keys: dict[str, list[str]] = {}
+        for key, text in self.missing.items():  # trials that lack the same are named together
+            keys.setdefault(text, []).append(key)
+        if len(keys) == 1:
+            ((text, own),) = keys.items()
+            said = f"{', '.join(own)}: expected {text}"
+        else:
+            said = ", ".join(f"{', '.join(own)} (expected {text})" for text, own in keys.items())
+        raise InputError(f"{self.path}: missing key{'s' * (len(self.missing) > 1)} {said}")
+
+
+def _stand_in(question: Question) -> Any:
+    """A value that stands in for a missing answer while further ones are looked for."""
+    for text in _STAND_INS:
+        with contextlib.suppress(ValueError):
+            return question.read(text)
+    raise ValueError(f"no value stands in for {question.key}")
 
 
 @dataclass
@@ -120,6 +179,13 @@ class Terminal:
             raise InputError(f"{where}: {sentence}")
         _place(self.raw, where).setdefault("accept", []).append(name)
         return True
+
+    @property
+    def lacks(self) -> bool:
+        return False
+
+    def complete(self) -> None:
+        pass
 
 
 def prompted(label: str, default: str | None = None) -> str:

@@ -84,7 +84,14 @@ def build(answers: Answers, base: Path, out: Path, asker: Asker, raw: dict[str, 
     materials = {
         name: m.model_dump(exclude_none=True, exclude_unset=True) for name, m in answers.materials.items()
     }
-    trials = [_trial(work, entry, materials) for entry in answers.trials]
+    trials = []
+    for entry in answers.trials:
+        try:
+            trials.append(_trial(work, entry, materials))
+        except InputError:
+            if not asker.lacks:  # else it may be of what stands in for a missing answer
+                raise
+    asker.complete()
     used = dict.fromkeys(trial["material"] for trial in trials)
     for name in answers.materials:
         if name not in used:  # misspelt, as a rule, and what is known of it would be lost

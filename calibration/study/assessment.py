@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
-from calibration.parameters import Parametrisation
+from calibration.parameters import Parametrisation, parametrisation
 
 if TYPE_CHECKING:
     from calibration.study.calibration import Calibration
@@ -43,6 +43,25 @@ def spoken(name: str) -> str:
         if name.startswith(f"{known}_"):
             return f"{word} {name.removeprefix(f'{known}_')}"
     return name.replace("_", " ")
+
+
+def undetermined_terms(result: Calibration) -> str:
+    """Sentence on a series law of which the data determine fewer terms than were fitted; empty elsewhere.
+
+    Terms that are too much alike make up for each other: their constants run along a valley without an end,
+    so that the fit neither converges nor has error bars of them.
+    """
+    if result.terms == 1:
+        return ""
+    law = parametrisation(result.law, terms=result.terms)
+    own = {c.name for c in law.coordinates if c.name[-1].isdigit()}  # of a term: shear_modulus_2
+    unknown = [spoken(e.name) for e in result.estimates if e.seen == "not identified" and e.name in own]
+    if not unknown:
+        return ""
+    return (
+        f"the data do not determine {result.terms} terms of {result.law} ({', '.join(unknown)} not"
+        f" identified): fit fewer, by --terms {result.terms - 1}"
+    )
 
 
 def at_bounds(

@@ -32,7 +32,13 @@ from calibration.inference import (
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.dice import DiceObjective
 from calibration.parameters import Parametrisation, implausible, part_entry
-from calibration.study.assessment import at_bounds, constants_lacking, off_prior, step_gains
+from calibration.study.assessment import (
+    at_bounds,
+    constants_lacking,
+    off_prior,
+    step_gains,
+    undetermined_terms,
+)
 from calibration.study.calibration import Calibration, Status
 from calibration.study.held_out import held_out
 from calibration.study.measurements import Measurements
@@ -206,6 +212,8 @@ def _polished(
     fitted = _point(problem, data, end.u, status=status, message=message, residuals=end.residuals)
     seen = data.outlines is not None
     fitted = replace(_certain(problem, fitted, end, bulk_seen=seen), unsettled=_unsettled(problem, end))
+    if not end.converged:
+        fitted = replace(fitted, message="; ".join(filter(None, (undetermined_terms(fitted), message))))
     if options.leave_one_out and data.outlines is not None:
         checks, note = held_out(problem, data.outlines, end.u)
         fitted = replace(fitted, held_out=checks, held_out_note=note)

@@ -2,7 +2,7 @@
 A silicone that relaxes and softens
 ===================================
 
-A strip is pulled to a stretch of 1.4, held for 30 s, and let go. Viscosity (a Prony series) relaxes the
+A strip is pulled to a stretch of 1.4, held for 30 s, and unloaded. Viscosity (a Prony series) relaxes the
 stress, Mullins' effect makes the way back softer than the way there. What both dissipate never falls.
 """
 

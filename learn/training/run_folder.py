@@ -15,6 +15,7 @@ import importlib
 import io
 import json
 import os
+import secrets
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -155,17 +156,20 @@ def write_whole(path: Path, data: bytes) -> None:
     """Write a file atomically: it holds these bytes, or its earlier content. OSError if it cannot be."""
     if path.is_dir():  # "." has no name to derive another from
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    beside = path.with_suffix(".part")
+    # under a name drawn for it, as `tisim.io.whole` has it: two processes never write into the same one
+    beside = path.with_name(f"{path.name}.{secrets.token_hex(4)}.part")
     try:
         with beside.open("wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
+    except BaseException as error:
+        with contextlib.suppress(OSError):  # which would hide the error itself
             beside.unlink()
-        raise OSError(error.errno, error.strerror, str(path)) from None
+        if isinstance(error, OSError):
+            raise OSError(error.errno, error.strerror, str(path)) from None
+        raise
 
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
@@ -309,6 +313,7 @@ class Log:
                     f"{last}: another training has written it in the meantime: --resume goes on, or choose"
                     " another --out"
                 )
+            _remove_parts(folder)
             kept = [line for line in read_log(folder) if line["epoch"] < epochs_done]
             write_whole(self._path, "".join(json.dumps(line) + "\n" for line in kept).encode())
         except BaseException:
@@ -336,6 +341,15 @@ class Log:
         if self._board is not None:
             with contextlib.suppress(OSError):  # a full disk was reported already
                 self._board.close()
+
+
+def _remove_parts(folder: Path) -> None:
+    """Remove what killed trainings left of files that they were writing; needs the lock on the folder."""
+    for name in (LAST, BEST, LOG):
+        earlier = (folder / name).with_suffix(".part")  # the name before 2026-11-28
+        for part in (earlier, *folder.glob(f"{name}.*.part")):
+            with contextlib.suppress(OSError):  # then it stays, and harms nothing
+                part.unlink()
 
 
 def _locked(folder: Path) -> int:

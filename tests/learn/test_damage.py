@@ -24,7 +24,7 @@ from learn.data import open_store
 from learn.errors import InputError
 from learn.evaluation import Evaluation, intervals_file
 from learn.evaluation.report import write_report
-from learn.training import Recipe, Trainer, load_run, read_log
+from learn.training import Recipe, Trainer, load_run, read_log, run_folder
 from learn.training.run_folder import load_checkpoint, save_checkpoint
 from tests.learn.commands import call, refused, train_small
 from tests.learn.small_store import write_manifest, write_store
@@ -316,19 +316,28 @@ def test_stopped_before_the_first_checkpoint_there_is_nothing_to_resume(
 RESUMED = Recipe(name="tiny", epochs=3, batch=8, model="invariant-gnn-small")
 
 
-@pytest.mark.parametrize("file", ["best.part", "last.part"])
-def test_a_full_disk_keeps_what_was_good(store: Path, tmp_path: Path, file: str) -> None:
+@pytest.mark.parametrize("name", ["best.pt", "last.pt"])
+def test_a_full_disk_keeps_what_was_good(
+    store: Path, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """/dev/full refuses every byte, as a full disk does; with free space the command works again."""
     arguments = (store, "--recipe", tmp_path / "r.yaml", "--threads", 1, "--out", tmp_path / "run")
     (tmp_path / "r.yaml").write_text("name: tiny\nepochs: 1\nbatch: 8\nmodel: invariant-gnn-small\n")
     (tmp_path / "run").mkdir()
-    (tmp_path / "run" / file).symlink_to("/dev/full")
-    full = call(learn.train.app, *arguments)
-    refused(
-        full, "cannot write", str(tmp_path / "run" / file.replace(".part", "")), "No space left on device"
-    )
+    part = tmp_path / "run" / f"{name}.00000000.part"
+    remove = run_folder._remove_parts
+
+    def fill(folder: Path) -> None:
+        remove(folder)
+        part.symlink_to("/dev/full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("secrets.token_hex", lambda _: "00000000")
+        patch.setattr(run_folder, "_remove_parts", fill)
+        full = call(learn.train.app, *arguments)
+    refused(full, "cannot write", str(tmp_path / "run" / name), "No space left on device")
     assert "nothing was kept" in full.stderr
-    assert not (tmp_path / "run" / file).exists()
+    assert not part.is_symlink()
     again = call(learn.train.app, *arguments)
     assert again.exit_code == 0, again.output
 
@@ -341,8 +350,8 @@ def test_a_disk_that_fills_up_later_is_resumed_to_the_same_weights(
 
     def full(self: Path, target: Path) -> Path:
         nonlocal calls
-        calls += self.name == "last.part"
-        if calls == 2 and self.name == "last.part":
+        calls += Path(target).name == "last.pt"
+        if calls == 2 and Path(target).name == "last.pt":
             raise OSError(errno.ENOSPC, "No space left on device")
         return plain(self, target)
 
@@ -350,7 +359,7 @@ def test_a_disk_that_fills_up_later_is_resumed_to_the_same_weights(
     with pytest.raises(OSError, match="No space left on device"):
         Trainer(open_store(store), RESUMED, tmp_path / "parts").train()
     assert load_checkpoint(tmp_path / "parts" / "last.pt")["epoch"] == 1
-    assert not (tmp_path / "parts" / "last.part").exists()
+    assert not list((tmp_path / "parts").glob("*.part"))
     load_run(tmp_path / "parts")
     assert [line["epoch"] for line in read_log(tmp_path / "parts")] == [0, 1]
     Trainer(open_store(store), RESUMED, tmp_path / "parts", resume=True).train()

@@ -193,3 +193,14 @@ def test_candidates_on_one_mesh_share_its_layout():
     one, two = Beam(material=SOFT, length=0.07), Beam(material=neo_hookean(1e4, 20), length=0.07)
     assert beam_discretisation(one) is beam_discretisation(two)
     assert beam_discretisation(one) is not beam_discretisation(Beam(material=SOFT, length=0.08))
+
+
+def test_what_is_in_a_grip_does_not_change_the_beam():
+    """Whatever its length, and whether it is meshed: the default mesh begins at the grip's face."""
+    short, long = (Beam(material=SOFT, length=0.05, grip_length=g) for g in (0.005, 0.04))
+    mesh = beam_mesh(length=0.05, section=short.section, grip_length=0.04, with_grips=True)
+    one, other, meshed = map(solve_beam, (short, long, Beam(material=SOFT, mesh=mesh)))
+    assert one.mesh.nodes[:, 0].min() == 0.0
+    np.testing.assert_array_equal(one.positions, other.positions)
+    assert meshed.mesh.nodes[:, 0].min() == -0.04
+    assert deflection(meshed)[2] == pytest.approx(deflection(one)[2], rel=1e-4)

@@ -46,7 +46,7 @@ def beam_mesh(
         Free length [m].
     section : Circle or Rectangle
     grip_length : float
-        Length held in each grip [m].
+        Length held in each grip [m], for `with_grips`.
     supports : "clamped-free" or "clamped-clamped"
     kind : "tet4", "tet10" or "hex8"
     axial_element_size : float

@@ -7,6 +7,8 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from tisim._options import Version
+
 EXAMPLES = """
 [bold]Examples[/bold]
 
@@ -22,14 +24,6 @@ Exit codes: 0 written, 2 bad input.
 """
 
 app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
-
-
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        import tisim
-
-        typer.echo(f"tisim {tisim.__version__}")
-        raise typer.Exit
 
 
 @app.command(epilog=EXAMPLES)
@@ -58,10 +52,7 @@ def main(
     seconds: Annotated[float, typer.Option(help="Duration of GIF and MP4 \\[s].")] = 4.0,
     width: Annotated[int, typer.Option(help="Width of GIF and MP4 in pixels.")] = 800,
     show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
-    version: Annotated[  # noqa: ARG001 - shown before anything else
-        bool,
-        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit."),
-    ] = False,
+    version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """Show results in three dimensions: one HTML page that opens from disk, without a server.
 

@@ -115,7 +115,10 @@ def fit(
             return Fit(
                 linear=linear,
                 converged=False,
-                message=f"no step lowers chi-square, though {promise:.2g} was promised",
+                message=(
+                    "no step lowers chi-square, although the linearised model predicts a decrease of"
+                    f" {promise:.2g}"
+                ),
             )
         state = found
         linear = model.linearise(state, wanted)

@@ -132,7 +132,7 @@ def check(folder: Path) -> NDArray[np.float64]:
             raise InputError(f"--check: {package} is not installed: pip install newton meshio")
     moved, still = runpy.run_path(str(folder / "beam.py"))["main"]()
     if not still:
-        raise InputError("--check: Newton's beam still swings after 1 s: too soft for the damping")
+        raise InputError("--check: Newton's beam still oscillates after 1 s: too soft for the damping")
     return np.asarray(moved, dtype=float)
 
 

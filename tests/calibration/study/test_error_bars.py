@@ -134,6 +134,18 @@ def test_two_ogden_terms_end_at_the_least_chi_square_with_intervals_of_the_likel
             assert last == pytest.approx(high, abs=0.3 * (high - low))
 
 
+def test_terms_that_the_data_do_not_tell_apart_are_named() -> None:
+    """Two terms on the stress of one: their exponents end alike, and the command that fits one is stated."""
+    stretch, scatter = np.linspace(1.05, 5.0, 40), np.random.default_rng(2).normal(size=40)
+    stress = uniaxial(stretch, G, 2.5) * (1.0 + 0.01 * scatter)
+    found = fit([trial("a", stretch, stress, stress_sd=300.0)], "ogden", terms=2)
+    assert found.status == "not converged"
+    assert found.message.startswith(
+        "the data do not determine 2 terms of ogden (G 1, G 2, alpha 1, alpha 2 not identified): fit fewer,"
+        " by --terms 1; polish: "
+    )
+
+
 def rises(residuals: Any, stress: Array, best_one: Any, i: int, side: int) -> float:
     """Where chi-square, minimised over the other constants, has risen by 3.84."""
     others = [k for k in range(4) if k != i]

@@ -49,9 +49,11 @@ def _check_way(scene: Press) -> None:
     values = np.array(scene.course.values) if scene.course is not None else np.ones(0)
     check_stretches(tuple(values), "uniaxial")
     before = np.array([1.0, *values[:-1]])
-    let_go = bool(((values > before) & (before < 1.0)).any())
-    if let_go and scene.platens == "bonded" and scene.side == "stick":
-        wanted = "'stop' where a bonded cylinder is let go again: a side that came down would stick for good"
+    unloads = bool(((values > before) & (before < 1.0)).any())
+    if unloads and scene.platens == "bonded" and scene.side == "stick":
+        wanted = (
+            "'stop' where a bonded cylinder is unloaded: a side that touched a platen would stick for good"
+        )
         raise FieldError("side", wanted, scene.side)
 
 
