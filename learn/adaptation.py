@@ -100,8 +100,8 @@ class Adaptation:
     def domain(self) -> Domain:
         """Domain of validity: of indenter, block, inclusion, law and depth that of the pokes.
 
-        Of where and at which angle the body is indented it is that of the run as well: few pokes leave much of
-        these ranges out, and the network has learned them.
+        Of where and at which angle the body is indented it is that of the run as well: few pokes leave much
+        of these ranges out, and the network has learned them.
         """
         own = domain_of(self.store, self.rows)
         known = known_domain(self.run, self.store)
