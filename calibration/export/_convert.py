@@ -49,6 +49,8 @@ class Conversion:
     unstable : tuple of Stability
         Tests in which a law that stands for another one is not stable, within or little beyond the stretches
         that were asked for.
+    unstable_card : tuple of Stability
+        The same of the card's own law, where another one stands for it.
     """
 
     form: Form
@@ -57,6 +59,7 @@ class Conversion:
     pressure: float
     poisson: float | None = None
     unstable: tuple[Stability, ...] = ()
+    unstable_card: tuple[Stability, ...] = ()
 
 
 def convert(
@@ -132,7 +135,8 @@ def convert(
             f" {off.high:.3g}, and at most {percent(most_loss)} is accepted (--most-loss)"
         )
     if best.how == "fit" and best.form.kind != "arruda-boyce":  # which is stable as far as its chains reach
-        return replace(best, unstable=stability(best.form.stress, low, high))
+        limits, own_limits = stability(best.form.stress, low, high), stability(card, low, high)
+        return replace(best, unstable=limits, unstable_card=own_limits)
     return best
 
 

@@ -10,6 +10,7 @@ from calibration.export._convert import Conversion
 from calibration.export._forms import COUPLED, VOLUMES, Form
 from calibration.export._job import Job, Target, Written
 from calibration.export._response import (
+    Stability,
     elastic,
     fibre_loss,
     percent,
@@ -82,8 +83,8 @@ def _law(job: Job) -> list[str]:
             f"There is no {law} there: {TITLES[c.form.kind]} stands for it, with the same Young's modulus at"
             f" small strain{fitted}. Stress differs: {spread}."
         )
-        if c.unstable:
-            found.append(_unstable(c))
+        if c.unstable or c.unstable_card:
+            found.append(_unstable(c, law))
     if c.poisson is not None:
         found.append(
             f"Poisson's ratio is {c.form.poisson:.4g} in place of the card's {c.poisson:.4g}, Young's modulus"
@@ -94,22 +95,33 @@ def _law(job: Job) -> list[str]:
     return found
 
 
-def _unstable(c: Conversion) -> str:
-    """Sentence on the tests in which the law that stands for the card's is not stable."""
+def _unstable(c: Conversion, law: str) -> str:
+    """Sentence on the tests in which the law that stands for the card's, or the card's own, is not stable."""
     ranges = {d.mode: (d.low, d.high) for d in c.differences}
-    inside, tests = False, []
-    for s in c.unstable:
-        low, high = ranges[s.mode]
-        inside |= (s.below is not None and s.below >= low) or (s.above is not None and s.above <= high)
-        sides = [f"below {s.below:.3g}"] if s.below is not None else []
-        sides += [f"above {s.above:.3g}"] if s.above is not None else []
-        tests.append(f"{s.mode}, stretches {' and '.join(sides)}")
+
+    def limits(found: tuple[Stability, ...]) -> str:
+        tests = []
+        for s in found:
+            sides = [f"below {s.below:.3g}"] if s.below is not None else []
+            sides += [f"above {s.above:.3g}"] if s.above is not None else []
+            tests.append(f"{s.mode}, stretches {' and '.join(sides)}")
+        return "; ".join(tests)
+
+    own = f"The card's own law, {law}, is not stable in {limits(c.unstable_card)}." if c.unstable_card else ""
+    if not c.unstable:
+        return own
+    inside = any(
+        (s.below is not None and s.below >= ranges[s.mode][0])
+        or (s.above is not None and s.above <= ranges[s.mode][1])
+        for s in c.unstable
+    )
     title, where = TITLES[c.form.kind], "within" if inside else "only beyond"
-    return (
+    text = (
         f"The {title} is not stable everywhere (Drucker: its tangent is not positive definite), {where} the"
-        f" range of these tests: {'; '.join(tests)}. A body that strains so far may find no equilibrium"
+        f" range of these tests: {limits(c.unstable)}. A body that strains so far may find no equilibrium"
         " there, or another than the card's."
     )
+    return f"{text} {own}".strip()
 
 
 def scene_lines(job: Job, target: Target) -> list[str]:

@@ -72,3 +72,14 @@ def test_what_stands_for_st_venant_kirchhoff_is_said_to_be_unstable(
     lines = losses(Job(name="m", material=m, conversion=found, keeps=frozenset()), high)
     (line,) = [s for s in lines if "not stable" in s]
     assert f"{where} the range of these tests: uniaxial, stretches below " in line
+
+
+def test_the_card_s_own_limits_are_said_too() -> None:
+    """A law is not blamed for what the card's has as well."""
+    m = tisim.material_from_moduli("st-venant-kirchhoff", shear_modulus=G, bulk_modulus=20.0 * G)
+    found = convert(
+        m, lambda f: calculix.TARGET.writes(f, m), low=0.6, high=1.6, most_loss=1.0, program="calculix"
+    )
+    lines = losses(Job(name="m", material=m, conversion=found, keeps=frozenset()), 1.6)
+    (line,) = [s for s in lines if "not stable" in s]
+    assert "The card's own law, st-venant-kirchhoff, is not stable in uniaxial, stretches below 0." in line
