@@ -39,7 +39,7 @@ def main(
     dataset: Annotated[str, typer.Argument(help="Dataset of the body: a folder, a zip or an fsspec URL.")],
     out: Annotated[Path, typer.Option(help="Folder of the adapted run.")] = Path("runs/adapted"),
     epochs: Annotated[
-        int | None, typer.Option(help="Largest number of passes over the pokes. Default: 8.")
+        int | None, typer.Option(help="Largest number of passes over the pokes. Default: 16.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed. Default: that of the run.")] = None,
     device: Device = "auto",

@@ -51,7 +51,7 @@ CHANGES: dict[str, Any] = {
     "fold": 0,
     "train_softness": None,
     "train_depth_mm": None,
-    "epochs": 8,
+    "epochs": 16,
     "batch": 16,
     "optimiser": "adam",
     "learning_rate": 3e-4,

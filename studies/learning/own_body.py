@@ -47,6 +47,7 @@ class Line(NamedTuple):
     radius: float
     validated: tuple[float, float]
     seconds: float
+    epochs: str
 
 
 def _predicted(model: Model, store: Store, rows: NDArray[np.int64]) -> Predictions:
@@ -63,6 +64,7 @@ def _line(
     intervals: Intervals,
     validated: tuple[float, float] = (np.nan, np.nan),
     seconds: float = np.nan,
+    epochs: str = "",
 ) -> Line:
     distance = frame_distances(domain, store, predictions.poke, predictions.depth)
     row, found = summarise(predictions), coverage(intervals, predictions, distance=distance)
@@ -79,6 +81,7 @@ def _line(
         float(intervals.radius_mm(predictions, distance=distance).mean()),
         validated,
         seconds,
+        epochs,
     )
 
 
@@ -111,6 +114,7 @@ def lines_of(run: Run, store: Store) -> list[Line]:
             intervals=found.intervals,
             validated=(after["mean"].mean, 100 * after["rel force"].mean),
             seconds=seconds,
+            epochs="none" if found.epochs is None else str(found.epochs),
         )
         lines.append(line)
         print(text_of(line), flush=True)
@@ -119,7 +123,7 @@ def lines_of(run: Run, store: Store) -> list[Line]:
 
 HEADS = (
     "| body | contact points | mean mm (cross-validated) | max mm | tip % | force % (cross-validated) |"
-    " frames inside the ranges % | points, forces in intervals % | mean radius mm | seconds |"
+    " frames inside the ranges % | points, forces in intervals % | mean radius mm | epochs | seconds |"
 )
 
 
@@ -139,6 +143,7 @@ def text_of(line: Line) -> str:
         f"{line.inside:.0f}",
         f"{line.inside_points:.0f}, {line.inside_force:.0f}",
         f"{line.radius:.3f}",
+        line.epochs,
         seconds,
     )
     return f"| {' | '.join(cells)} |"
@@ -171,7 +176,7 @@ def main() -> None:
     torch.set_num_threads(arguments.threads)
     run = load_run(arguments.run)
     bodies = [lines_of(run, open_store(dataset)) for dataset in arguments.datasets]
-    print(HEADS, "| --- " * 10 + "|", sep="\n")
+    print(HEADS, "| --- " * 11 + "|", sep="\n")
     for lines in bodies:
         for line in lines:
             print(text_of(line))
