@@ -59,6 +59,7 @@ include_patterns = [
     "datasets/measured/README.md",
     "datasets/cards/*/card.md",
     "datasets/cards/*/*.png",
+    "learn/pretrained/*/card.md",
     "tests/README.md",
     "CHANGELOG.md",
 ]

@@ -118,17 +118,17 @@ class Adaptation:
     def verdict(self) -> str:
         """One sentence: what the fine-tuning gave on contact points that it was not given."""
         was, now = self.rows_of_table.values()
-        mean = f"mean error {was['mean'].mean:.3g} -> {now['mean'].mean:.3g} mm"
-        force = f"force error {was['rel force'].mean:.1%} -> {now['rel force'].mean:.1%}"
+        mean, force = was["mean"].mean, was["rel force"].mean
         if self.epochs is None:
-            kept = "the run's own network is kept"
-        else:
-            kept = (
-                f"fine-tuned for {self.epochs} epochs"
-                if self.epochs
-                else "the unit of the force is corrected"
+            return (
+                "fine-tuning gains nothing at contact points left out: the run's own network is kept (mean"
+                f" error {mean:.3g} mm, force error {force:.1%})"
             )
-        return f"at contact points left out: {mean}, {force}; {kept}"
+        how = f"fine-tuned for {self.epochs} epochs" if self.epochs else "the unit of the force is corrected"
+        return (
+            f"{how}: at contact points left out mean error {mean:.3g} -> {now['mean'].mean:.3g} mm, force"
+            f" error {force:.1%} -> {now['rel force'].mean:.1%}"
+        )
 
     @property
     def interval_text(self) -> str:

@@ -106,13 +106,12 @@ def draw_adaptation(before: Predictions, after: Predictions) -> Figure:
     axes = figure.subplots(1, 3)
     pokes = ranked_pokes(before)
     for k, (name, poke) in enumerate(pokes.items()):
-        for part, style in ((before, ":"), (after, "x")):
-            mine = np.flatnonzero(part.poke == poke)
-            mine = mine[np.argsort(part.depth[mine])]
-            depth = part.depth[mine] * 1e3
-            if part is before:
-                axes[0].plot(depth, part.force[mine], color=f"C{k}", label=f"poke {poke}, {name} as trained")
-            axes[0].plot(depth, part.force_predicted[mine], style, color=f"C{k}")
+        mine = np.flatnonzero(before.poke == poke)  # the frames of both are the same, in one order
+        mine = mine[np.argsort(before.depth[mine])]
+        depth, colour = before.depth[mine] * 1e3, f"C{k}"
+        axes[0].plot(depth, before.force[mine], color=colour, label=f"poke {poke}, {name} as trained")
+        axes[0].plot(depth, before.force_predicted[mine], ":", color=colour)
+        axes[0].plot(depth, after.force_predicted[mine], "x", color=colour)
     axes[0].set(title="line simulated, dots as trained, crosses adapted", ylabel="force [N]")
     axes[0].legend(fontsize=8)
     for part, style, label in ((before, ":", "as trained"), (after, "-", "adapted")):
