@@ -124,7 +124,8 @@ class Adaptation:
                 "fine-tuning gains nothing at contact points left out: the run's own network is kept (mean"
                 f" error {mean:.3g} mm, force error {force:.1%})"
             )
-        how = f"fine-tuned for {self.epochs} epochs" if self.epochs else "the unit of the force is corrected"
+        passes = "1 epoch" if self.epochs == 1 else f"{self.epochs} epochs"
+        how = f"fine-tuned for {passes}" if self.epochs else "only the unit of the force is corrected"
         return (
             f"{how}: at contact points left out mean error {mean:.3g} -> {now['mean'].mean:.3g} mm, force"
             f" error {force:.1%} -> {now['rel force'].mean:.1%}"

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from learn.errors import InputError
+
 _HERE = Path(__file__).parent
 
 
@@ -18,6 +20,13 @@ def names() -> list[str]:
 
 
 def folder_of(name: str | Path) -> Path:
-    """Folder of a run: `name` itself, or that of the network of this name if there is no such folder."""
+    """Folder of a run: `name` itself, or of the network of this name if there is no such folder.
+
+    InputError if there is neither.
+    """
     path = Path(name)
-    return _HERE / path if str(path) in names() and not path.exists() else path
+    if path.exists():
+        return path
+    if str(path) not in names():
+        raise InputError(f"{path}: no such folder, expected that of a run, or one of {', '.join(names())}")
+    return _HERE / path
