@@ -286,9 +286,10 @@ def stages_to(most: int) -> list[int]:
 
 
 def _loss(predictions: Predictions) -> float:
-    """Mean of the logarithms of mean error and force error."""
+    """Mean of the logarithms of mean error and force error; infinite if these are not finite."""
     row = summarise(predictions)
-    return float(np.mean([np.log(row[key].mean) for key in ("mean", "rel force")]))
+    found = float(np.mean([np.log(row[key].mean) for key in ("mean", "rel force")]))
+    return found if np.isfinite(found) else np.inf
 
 
 def _intervals(run: Run, predictions: Predictions) -> Intervals:

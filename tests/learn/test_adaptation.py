@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,12 @@ from numpy.typing import NDArray
 import learn
 from learn.adaptation import PARTS, Adaptation, adapt, adapt_recipe, stages_to
 from learn.cli import app
-from learn.data import contact_points, open_store
+from learn.data import MemoryDataset, contact_points, open_store, split_of_run
 from learn.data.folds import frames_once
 from learn.errors import InputError
-from learn.evaluation import load_intervals, parts_of
+from learn.evaluation import fit_intervals, load_intervals, parts_of, predict_part, save_intervals
+from learn.models import Scenes
+from learn.page.content import content_of
 from learn.progress import Progress
 from learn.training import Run, load_run
 from learn.training.fine_tuning import FineTuning, Tuned
@@ -39,7 +42,16 @@ def trained_on(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def run(trained_on: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return load_run(train_small(trained_on, tmp_path_factory.mktemp("run") / "run", "--epochs", 2))
+    return load_run(
+        train_small(
+            trained_on,
+            tmp_path_factory.mktemp("run") / "run",
+            "--epochs",
+            2,
+            "--model",
+            "invariant-gnn-small",
+        )
+    )
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +68,10 @@ def body(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(run: Run, body: Path) -> Adaptation:
-    return adapt(run, open_store(body), recipe=adapt_recipe(run, {"epochs": 4}))
+    states: list[Progress] = []
+    found = adapt(run, open_store(body), recipe=adapt_recipe(run, {"epochs": 2}), on_progress=states.append)
+    assert [state.done for state in states] == list(range(1, int(states[-1].total) + 1))
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +105,7 @@ def test_each_contact_point_is_predicted_by_a_network_that_was_not_given_it(
         return (Tuned(run.model, run.statistics) for _ in epochs)
 
     monkeypatch.setattr(FineTuning, "stages", remember)
-    found = adapt(run, store)
+    found = adapt(run, store, recipe=adapt_recipe(run, FEW))
     assert len(given) == PARTS
     left_out = [np.setdiff1d(found.rows, rows) for rows in given]
     np.testing.assert_array_equal(np.sort(np.concatenate(left_out)), found.rows)
@@ -141,11 +156,15 @@ def test_the_adapted_run_predicts_its_body_with_intervals(
     assert "86% can be promised" in found.interval_text
 
 
-def test_intervals_keep_the_error_scale_of_the_run(run: Run, body: Path, tmp_path: Path) -> None:
-    call(app, "evaluate", run.folder, "--no-baselines", "--no-clouds", "--out", tmp_path / "report")
-    own = load_intervals(load_run(run.folder))
-    assert own is not None
-    found = adapt(run, open_store(body), recipe=adapt_recipe(run, FEW))
+def test_intervals_keep_the_error_scale_of_the_run(
+    trained_on: Path, run: Run, body: Path, tmp_path: Path
+) -> None:
+    store = open_store(trained_on)
+    scenes, rows = Scenes.of(store), split_of_run(store, run).validation
+    own = fit_intervals(predict_part(run.model, scenes, MemoryDataset(store, rows)))
+    copy = replace(run, folder=tmp_path)
+    save_intervals(copy, own)
+    found = adapt(copy, open_store(body), recipe=adapt_recipe(run, FEW))
     assert found.intervals is not None
     assert (found.intervals.scale, found.intervals.force_scale) == (own.scale, own.force_scale)
     assert found.intervals.factors != own.factors
@@ -177,12 +196,14 @@ def test_nothing_is_left_to_test_on_the_body(adapted: Path) -> None:
     assert "nothing is left to test" in _refused("evaluate", adapted)
 
 
-def test_it_is_exported_and_shown_as_a_page(adapted: Path, tmp_path: Path) -> None:
-    exported = call(app, "export", adapted, "--out", tmp_path / "onnx")
-    assert exported.exit_code == 0, exported.output
-    page = call(app, "page", adapted, "--out", tmp_path / "poke.html")
-    assert page.exit_code == 0, page.output
-    assert "0 simulated pokes" in page.output
+def test_the_page_and_the_export_find_no_test_part(adapted: Path, body: Path) -> None:
+    predictor = learn.load(adapted)
+    split = split_of_run(open_store(body), predictor.run)
+    assert len(split.train) == 18
+    assert not len(split.test)
+    shown = content_of(predictor)
+    assert shown.about["simulated"] == []
+    assert "seen in training" in shown.about["interiors"][0]["label"]
 
 
 def test_the_command_writes_a_run_and_its_pictures(run: Run, body: Path, tmp_path: Path) -> None:
@@ -219,12 +240,6 @@ def test_numbers_of_epochs_to_choose_among() -> None:
     assert stages_to(1) == [0, 1]
     assert stages_to(6) == [0, 1, 2, 4, 6]
     assert stages_to(16) == [0, 1, 2, 4, 8, 16]
-
-
-def test_progress_ends_at_its_total(run: Run, body: Path) -> None:
-    states: list[Progress] = []
-    adapt(run, open_store(body), recipe=adapt_recipe(run, FEW), on_progress=states.append)
-    assert [state.done for state in states] == list(range(1, int(states[-1].total) + 1))
 
 
 def test_what_cannot_be_adapted_to_is_refused_by_name(
