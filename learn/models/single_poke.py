@@ -36,6 +36,8 @@ _GAUSS = [(10 + k, 1) for k in range(10)] + [(21, 1), (22, 1), (26, 1)]
 _TANH = [(20, 1), (30, 1), (31, 1)]
 _OF_DEPTH = [(8, 1), (25, 1), (23, -1), (24, -1), (27, 1), (28, 1), (29, 1)]
 _OF_POKE = (6, 7)
+# exp of less is 0 beside any other feature; subnormal numbers would make the products a hundred times slower
+_LEAST_EXPONENT = np.float32(-60)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,8 +48,10 @@ class _Touch:
 
     Attributes
     ----------
-    r, unit : from first contact to the points, and divided by sqrt(|r|^2 + 1), each (3, n).
-    push : unit direction (3,), float32; `facing`, its component along the normal at the contact.
+    r, unit : from first contact to the points, and divided by sqrt(|r|^2 + 1); components along the `a` axes
+        along which the surface extends, each (a, n).
+    push : those components of the unit direction (a,), float32.
+    facing : component of the push along the normal at the contact.
     far : 1 / sqrt(|r|^2 + 1); `along`, `aside`, the distances along the axis and from it; `under`, the weight
         of points under the rod's end; each (n,).
     near : weights of the points for each of `WIDTHS`, (w, n).
@@ -95,6 +99,7 @@ class SinglePoke:
         self._points = np.ascontiguousarray((scene.points / self._radius).numpy().T)
         self._normals = np.ascontiguousarray(scene.normals.float().numpy().T)
         n = self._points.shape[1]
+        self._axes = np.flatnonzero(np.ptp(self._points, axis=1) > 0.0)
         code = encoded.code[:, inclusion]
         self._looked = model.look(code).numpy()
         self._clear = encoded.clear[:, inclusion].double().numpy()
@@ -137,13 +142,12 @@ class SinglePoke:
         self._rounds: list[_Round] = []
         shift = torch.zeros(hidden)
         for part in parts:
-            self._rounds.append(_Round(part, encoded.stencils, self._radius, shift, x))
+            self._rounds.append(_Round(part, encoded.stencils, self._radius, shift, x, len(self._axes)))
             shift = shift + part.back.bias
         slopes = parts[-1].directions * len(parts[-1].scales)
         # vectors that the outputs weight: the constant ones, and memory for those of a poke
-        self._basis = np.empty((3, 3 + v + slopes, n), dtype=np.float32)
+        self._basis = np.zeros((3, 3 + v + slopes, n), dtype=np.float32)
         self._basis[:, 0], self._basis[:, 3 : 3 + v] = self._normals, self._vectors
-        self._products = np.empty_like(self._basis)
         leave, head, last = model.leave[0], model.force_head[0], model.force_head[2]
         assert isinstance(leave, nn.Linear)
         assert isinstance(head, nn.Linear)
@@ -182,8 +186,8 @@ class SinglePoke:
         amounts *= at.far
         smooth = self._smooth(at, deep)
         amounts[:3] += smooth
-        self._basis[:, 3 + self._vectors.shape[1] :] = slopes
-        u = np.multiply(self._basis, amounts, out=self._products).sum(axis=1)
+        self._basis[self._axes, 3 + self._vectors.shape[1] :] = slopes
+        u = np.einsum("kcn,cn->kn", self._basis, amounts)
         if len(at.beside):
             some = at.beside
             of_smooth = (smooth[:, some] * self._basis[:, :3, some]).sum(axis=1)
@@ -204,7 +208,8 @@ class SinglePoke:
         r, push = r64.astype(np.float32), direction.astype(np.float32)
         square64 = (r64 * r64).sum(axis=0)
         square = square64.astype(np.float32)
-        near = np.exp(self._widths * (square - square.min()) + self._log_area)
+        near = self._widths * (square - square.min()) + self._log_area
+        near = _exp(near - near.max(axis=1, keepdims=True))
         near /= near.sum(axis=1, keepdims=True)
         here = self._normals @ near[0]
         moments = (self._scales * near[:, None] * r).reshape(-1, r.shape[1]) @ self._looked
@@ -226,7 +231,7 @@ class SinglePoke:
         gauss = rows[g:t]
         gauss *= gauss
         gauss *= np.float32(-0.5)
-        np.exp(gauss, out=gauss)
+        _exp(gauss, out=gauss)
         under = rows[t - 1].copy()
         rows[t:o] = 2 - 2 * aside, over, 3 * over / aside
         np.tanh(rows[t:o], out=rows[t:o])
@@ -246,9 +251,9 @@ class SinglePoke:
         place = _contact.Place(r.T[beside], push, None, along[beside], aside[beside], self._edge)
         blocked = self._ahead(self._radius * r64, direction)
         return _Touch(
-            r=r,
-            unit=unit,
-            push=push,
+            r=r[self._axes],
+            unit=unit[self._axes],
+            push=push[self._axes],
             facing=float(here @ push),
             far=far,
             along=along,
@@ -283,7 +288,7 @@ class SinglePoke:
         """Fill in the features of all points that depend on the depth."""
         rows = self._moving_rows.numpy()
         np.multiply(at.far, np.float32(deep), out=rows[0])
-        rows[1] = np.exp(np.float32(-0.5) * np.square(at.aside * np.float32(1 / (1 + 0.5 * deep))))
+        _exp(np.float32(-0.5) * np.square(at.aside * np.float32(1 / (1 + 0.5 * deep))), out=rows[1])
         np.multiply(np.float32(deep) - at.along, _column(1, 0.25, 1, 4, 1 / deep), out=rows[2:7])
         np.tanh(rows[2:7], out=rows[2:7])
         rows[4:7] *= at.under
@@ -302,6 +307,10 @@ class SinglePoke:
 
 def _column(*values: float) -> Floats:
     return np.array(values, dtype=np.float32)[:, None]
+
+
+def _exp(x: Floats, out: Floats | None = None) -> Floats:
+    return np.asarray(np.exp(np.maximum(x, _LEAST_EXPONENT, out=out), out=out))
 
 
 def _channels(count: int, n: int) -> Tensor:
@@ -341,11 +350,18 @@ class _Round:
     With r from the contact, mean((x_j - x_i) v_j) = mean(r_j v_j) - r_i mean(v_j): one sparse product gives
     means and slopes at all scales. Codes are passed without the biases of earlier rounds' last layers
     (`shift`), which the layers that read them include in their own. `x` is the memory that the rounds share:
-    a row of ones, the code, and what else a round reads.
+    a row of ones, the code, and what else a round reads. `axes` is the number of axes along which the surface
+    extends: slopes along others are 0, and are not computed.
     """
 
     def __init__(
-        self, part: _Messages, stencils: tuple[Stencil, ...], unit: float, shift: Tensor, x: Tensor
+        self,
+        part: _Messages,
+        stencils: tuple[Stencil, ...],
+        unit: float,
+        shift: Tensor,
+        x: Tensor,
+        axes: int,
     ) -> None:
         hidden, d = part.back.out_features, part.directions
         m, scales = part.thin.out_features - d, len(part.scales)
@@ -358,31 +374,31 @@ class _Round:
         self._bias = (part.mix.bias + part.mix.weight[:, :hidden] @ shift + part.whole(shift)).numpy()
         # memory common to torch and NumPy
         self._x, self._biased_h = x[: 1 + part.mix.in_features], x[: 1 + hidden]
-        self._h, carried = x[1 : 1 + hidden], _channels(m + 4 * d, n)
+        self._h, carried = x[1 : 1 + hidden], _channels(m + d + axes * d, n)
         self._mixed = _channels(hidden, n)
         self._thinned, self._carried = carried[: m + d], carried.numpy()
-        self._moved = carried[m + d :].unflatten(0, (3, d)).numpy()
+        self._moved = carried[m + d :].unflatten(0, (axes, d)).numpy()
         beside = self._x[1 + hidden :].unflatten(0, (scales, m + 2 * d)).numpy()
         self._of_means, self._of_unit, self._of_push = np.split(beside, [m, m + d], axis=1)
 
     def __call__(self, at: _Touch) -> Floats:
-        """Write the new code in place of the old one; return the slopes (3, scales x directions, n)."""
-        m, d = self._m, self._d
+        """Write the new code in place of the old one; return the slopes (axes, scales x directions, n)."""
+        m, d, axes = self._m, self._d, len(at.r)
         thin = torch.mm(self._thin, self._biased_h, out=self._thinned).numpy()
         np.multiply(at.r[:, None], thin[m:], out=self._moved)
         wanted = torch.from_numpy(np.ascontiguousarray(self._carried.T))
         found = np.ascontiguousarray(torch.mm(self._means, wanted).numpy().T)
-        found = found.reshape(m + 4 * d, *self._of_means.shape[::2])  # (channels, scales, n)
+        found = found.reshape(len(found), *self._of_means.shape[::2])  # (channels, scales, n)
         self._of_means[:] = found[:m].swapaxes(0, 1)
-        slope = found[m + d :].reshape(3, d, *found.shape[1:])
+        slope = found[m + d :].reshape(axes, d, *found.shape[1:])
         slope -= at.r[:, None, None] * found[m : m + d]
         slope *= self._over_radius
         self._of_unit[:] = (slope * at.unit[:, None, None]).sum(axis=0).swapaxes(0, 1)
-        self._of_push[:] = (at.push @ slope.reshape(3, -1)).reshape(slope.shape[1:]).swapaxes(0, 1)
+        self._of_push[:] = (at.push @ slope.reshape(axes, -1)).reshape(slope.shape[1:]).swapaxes(0, 1)
         self._mix.numpy()[:, 0] = self._bias + self._whole @ (self._h.numpy() @ at.near[2])
         mixed = silu(torch.mm(self._mix, self._x, out=self._mixed), inplace=True)
         self._h.addmm_(self._back, mixed)
-        return slope.swapaxes(1, 2).reshape(3, -1, slope.shape[-1])
+        return slope.swapaxes(1, 2).reshape(axes, -1, slope.shape[-1])
 
 
 def _stacked(operators: Sequence[Sparse | Gathered]) -> Tensor:
