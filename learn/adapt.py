@@ -53,14 +53,13 @@ def main(
         from learn.adaptation import adapt, adapt_recipe
         from learn.data import open_store
         from learn.evaluation.report import full_table
-        from learn.pretrained import folder_of
         from learn.training import DivergedError, load_run, make_device
         from learn.training.run_folder import check_free
 
         load_plugins(plugin or [])
         set_threads(threads)
         check_free(out)
-        begun = load_run(folder_of(run))
+        begun = load_run(run)
         changes = {k: v for k, v in (("epochs", epochs), ("seed", seed)) if v is not None}
         recipe = adapt_recipe(begun, changes, "the command line")
         store = open_store(dataset)

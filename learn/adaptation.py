@@ -37,7 +37,7 @@ from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run, known_domain, load_run
 from learn.training.fine_tuning import FineTuning, Tuned
 from learn.training.recipe import check_recipe
-from learn.training.run_folder import BEST, check_free, save_checkpoint, write_whole
+from learn.training.run_folder import BEST, check_free, save_checkpoint, save_tables, write_whole
 from learn.validity import Domain, domain_of
 
 PARTS = 5  # of the cross-validation
@@ -155,6 +155,7 @@ class Adaptation:
         place.mkdir(parents=True, exist_ok=True)
         write_whole(place / "adaptation.json", (json.dumps(self.as_dict(), indent=1) + "\n").encode())
         draw_adaptation(self.before, self.after).savefig(place / "adaptation.png", dpi=120)
+        save_tables(place, self.store)
         save_checkpoint(place / BEST, self._content())
         if self.intervals is not None:
             save_intervals(load_run(place), self.intervals)

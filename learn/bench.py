@@ -15,6 +15,10 @@ EXAMPLES = """
 
   python -m learn.bench runs/quick
 
+The network that comes with tisim:
+
+  python -m learn.bench covers
+
 The surrogate and the small one beside it:
 
   python -m learn.bench runs/fast-invariant-gnn-ogden-0-0 runs/fast-invariant-gnn-small-ogden-0-0
@@ -35,11 +39,11 @@ def main(
     console = make_console()
     with plain_errors():
         from learn.benchmark import BATCH, latencies, loader_rates, yardstick
-        from learn.training import check_dataset, load_run, open_dataset
+        from learn.training import check_dataset, load_run, open_tables
 
         load_plugins(plugin or [])
         loaded = [load_run(run) for run in runs]
-        store = open_dataset(loaded[0], dataset, verify=False)
+        store = open_tables(loaded[0], dataset)
         for run in loaded:
             check_dataset(run.uuid, run.folder, store)
         rows = [row for run in loaded for row in latencies(run, store, repeats)]
@@ -55,7 +59,9 @@ def main(
             f"beside it, NumPy's product of two 512 x 512 float32 matrices: "
             f"median {median:.2f} ms, best {best:.2f} ms; {os.cpu_count()} cores{load}"
         )
-        if loader:
+        if loader and not store.has_fields:
+            console.print(f"{store.location} is not here: its loaders are not measured")
+        elif loader:
             rates = loader_rates(store)
             memmap = rates["NumPy memmap"]
             print_table(

@@ -13,7 +13,7 @@ import numpy as np
 import torch
 
 from learn.data import Batch, MemoryDataset, Store, StreamDataset, make_batch
-from learn.data.loaders import epoch_order
+from learn.data.loaders import epoch_order, without_fields
 from learn.models import InvariantGnn, Model, Pokes, Response, Scene, Scenes, pokes_of
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import OnnxBundle, bundle_in
@@ -82,10 +82,10 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     times: list[tuple[str, str, float, float]] = []
     setup = store.setup_index[store.geometry[store.frame_poke]]
     rows = np.flatnonzero(setup == setup[0])[:BATCH]
-    data, model, name = MemoryDataset(store, rows), run.model, run.recipe.model
+    model, name = run.model, run.recipe.model
     scenes = Scenes.of(store)
     scene = scenes.scenes[setup[0]]
-    [(_, _, many)] = scenes.parts(pokes_of(data.__getitems__(np.arange(len(rows)))))
+    [(_, _, many)] = scenes.parts(pokes_of(without_fields(store, rows)))
     one = type(many)(**{name: value[:1] for name, value in vars(many).items()})
     encoded = model.encode(scene, model.prepare(scene))
     first = store.frame_poke[0]  # a poke before it may not have been simulated

@@ -51,7 +51,9 @@ def main(
             "--ensemble", help="Average runs that differ only in their seed, and evaluate the average too."
         ),
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="Default: evaluation/ in the first run.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Default: evaluation/ in the first run, or covers-evaluation/.")
+    ] = None,
     device: Device = "auto",
     threads: Threads = None,
     plugin: Plugins = None,
@@ -63,13 +65,14 @@ def main(
         from learn.evaluation import evaluate as evaluate_runs
         from learn.evaluation import replaced_text, save_intervals
         from learn.evaluation.report import cautions, tables, verdict, write_report
+        from learn.pretrained import is_shipped, results_of
         from learn.training import check_dataset, load_run, make_device, open_dataset
 
         load_plugins(plugin or [])
         set_threads(threads)
         log_to(console)
         chosen = make_device(device)
-        folder = out or runs[0] / "evaluation"
+        folder = out or results_of(runs[0], "evaluation")
         if folder.exists() and not folder.is_dir():
             raise InputError(f"--out {folder}: expected the name of a folder, this is a file")
         loaded = [load_run(path) for path in runs]
@@ -96,6 +99,9 @@ def main(
             return
         # last, so that a run's folder that cannot be written costs no more than the intervals
         for run, intervals in found.intervals:
+            if is_shipped(run.folder):
+                console.print(f"{run.folder.name}: the intervals that come with it are kept")
+                continue
             text = replaced_text(run, intervals)
             if text is not None:
                 console.print(text)

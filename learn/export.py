@@ -27,9 +27,9 @@ Exit codes: 0 written and checked, 2 bad input or a check that failed.
 
 
 def main(
-    run: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    run: Annotated[Path, typer.Argument(help="Folder of a run, or covers.")],
     dataset: Dataset = None,
-    out: Annotated[Path | None, typer.Option(help="Default: onnx/ in the run.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Default: onnx/ in the run, or covers-onnx/.")] = None,
     shape: Annotated[
         str | None,
         typer.Option(
@@ -46,11 +46,12 @@ def main(
     with plain_errors():
         from learn.onnx_bundle import write_bundle
         from learn.predictor import load
+        from learn.pretrained import results_of
 
         load_plugins(plugin or [])
         predictor = load(run, dataset=dataset)
         files, wrong, pokes = write_bundle(
-            predictor.run, predictor.store, out or run / "onnx", predictor.domain, shape=shape
+            predictor.run, predictor.store, out or results_of(run, "onnx"), predictor.domain, shape=shape
         )
         console.print(
             f"{', '.join(str(path) for path in files)} and model.json; "

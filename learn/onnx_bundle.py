@@ -28,8 +28,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from learn.data import MemoryDataset, Store, split_of_run
-from learn.data.loaders import no_clock
+from learn.data import Store, split_of_run
+from learn.data.loaders import no_clock, without_fields
 from learn.errors import InputError
 from learn.models import Cegnn, InvariantGnn, Pokes, Scene, Scenes, pokes_of
 from learn.models._encoder import Encoded, Stencil, gathered
@@ -263,9 +263,7 @@ def write_bundle(
     rows = split_of_run(store, run).test
     rows = rows[here[rows]] if here[rows].any() else np.flatnonzero(here & store.presses)
     some = np.linspace(0, len(rows) - 1, min(_CHECKED, len(rows))).astype(int)
-    [(_, _, checked)] = scenes.parts(
-        pokes_of(MemoryDataset(store, rows[some]).__getitems__(np.arange(len(some))))
-    )
+    [(_, _, checked)] = scenes.parts(pokes_of(without_fields(store, rows[some])))
     _exportable(run)
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as part:

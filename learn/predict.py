@@ -15,6 +15,10 @@ EXAMPLES = """
 
   python -m learn.predict runs/quick datasets/scenes/poke.yaml --out poke
 
+By the network that comes with tisim (its card: learn/pretrained/covers/card.md):
+
+  python -m learn.predict covers datasets/scenes/lump.yaml --out lump
+
 Runs of several seeds as one, the mean of their predictions:
 
   python -m learn.predict runs/fast-invariant-gnn-ogden-0-0 runs/fast-invariant-gnn-ogden-0-1 poke.yaml
@@ -40,7 +44,7 @@ Exit codes: 0 done, 2 bad input, or outside the training with --strict.
 
 def main(
     runs: Annotated[
-        list[Path], typer.Argument(help="Folder of a run, or of several runs to average.", metavar="RUN...")
+        list[Path], typer.Argument(help="Folder of a run, or covers, or folders of several runs to average.", metavar="RUN...")
     ],
     scene: Annotated[Path, typer.Argument(help="YAML file with the poke.")],
     dataset: Dataset = None,

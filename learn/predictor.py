@@ -32,7 +32,7 @@ from learn.prediction import AtPoints, PokePrediction, html_table
 from learn.quantities import gap_mm, poke_values
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
-from learn.training import Run, check_dataset, known_domain, load_run, open_dataset
+from learn.training import Run, check_dataset, known_domain, load_run, open_tables
 from learn.validity import Domain, unknown_checks
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ class Predictor:
     Attributes
     ----------
     run : the trained model with its recipe.
-    store : the dataset that it was trained on.
+    store : the dataset that it was trained on, or its tables alone if it is not at hand (`Store.has_fields`).
     domain : domain of validity; recorded with the checkpoint, or derived from the dataset.
     """
 
@@ -184,7 +184,11 @@ class Predictor:
         rows = [
             ("run", ", ".join(str(folder) for folder in run.members) or str(run.folder)),
             ("model", f"{run.recipe.model}, epoch {run.epoch} of {run.recipe.epochs}"),
-            ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes"),
+            (
+                "dataset",
+                f"{store.location}, {store.law}, {store.pokes} pokes"
+                f"{'' if store.has_fields else ' (tables alone)'}",
+            ),
             ("trained on", f"{run.statistics.frames} frames"),
             ("shapes", ", ".join(store.shapes)),
             ("blocks", store.describe_blocks()),
@@ -211,8 +215,9 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
 
     Parameters
     ----------
-    run : folder of a run, or several that differ in seed, to be joined as an ensemble.
-    dataset : the dataset, if it moved since the training.
+    run : folder of a run, or "covers", the network that comes with the package; or several runs that differ
+        in seed, to be joined as an ensemble.
+    dataset : the dataset, if it moved since the training. The tables in the run's folder are enough without.
 
     Raises
     ------
@@ -224,7 +229,7 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
         raise InputError("expected the folder of a run, got none")
     runs = [load_run(folder) for folder in folders]
     joined = join_runs(runs) if len(runs) > 1 else runs[0]
-    store = open_dataset(joined, dataset, verify=False)
+    store = open_tables(joined, dataset)
     if len(runs) == 1:
         return Predictor(joined, store)
     domains = [known_domain(one, store) for one in runs]

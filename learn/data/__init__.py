@@ -5,6 +5,7 @@ from learn.data.loaders import Batch, MemoryDataset, StreamDataset, make_batch
 from learn.data.setup import Setup
 from learn.data.statistics import Statistics, statistics
 from learn.data.store import Store, open_store
+from learn.data.tables import load_tables
 
 __all__ = [
     "FOLDS",
@@ -17,6 +18,7 @@ __all__ = [
     "StreamDataset",
     "contact_points",
     "interiors",
+    "load_tables",
     "make_batch",
     "open_store",
     "split_of",

@@ -62,6 +62,11 @@ class Batch:
         return Batch(**{f.name: getattr(self, f.name).to(device, non_blocking=True) for f in fields(self)})
 
 
+def without_fields(store: Store, rows: NDArray[np.int64]) -> Batch:
+    """Batch of these frames at no points: the pokes, and the forces."""
+    return make_batch(store, rows, np.empty((len(rows), 0, 3), dtype=np.float32))
+
+
 def make_batch(store: Store, rows: NDArray[np.int64], displacement: NDArray[np.float32]) -> Batch:
     """Batch of these frames, with their `displacement` (b, n, 3), which is not copied."""
     poke = store.frame_poke[rows]

@@ -82,6 +82,8 @@ class Store:
     solved_as : index of the poke whose solve is used: itself, or one that differs by a factor of the moduli,
         shape (p,).
     clock : time data of the frames; None if the dataset has no time.
+    has_fields : False if only the tables are here (`learn.data.tables`), so that `displacement` and `surface`
+        raise InputError.
     """
 
     location: str
@@ -103,6 +105,7 @@ class Store:
     rod_force: Floats
     solved_as: Ints
     clock: Clock | None = None
+    has_fields: bool = True
 
     @property
     def copies(self) -> NDArray[np.bool_]:
@@ -133,8 +136,9 @@ class Store:
 
     @property
     def address(self) -> str:
-        """URL or absolute path of the store."""
-        return self.location if "://" in self.location else str(Path(self.location).resolve())
+        """URL or absolute path of the store; of tables alone, where it was when they were written."""
+        local = self.has_fields and "://" not in self.location
+        return str(Path(self.location).resolve()) if local else self.location
 
     @property
     def uuid(self) -> str:
@@ -209,20 +213,20 @@ class Store:
     @property
     def shard(self) -> int:
         """Number of frames in one file of the displacement, which are best read together."""
-        array: Any = group_here(self.location)["grid_displacement"]
+        array = self._grid_displacement()
         return int((array.shards or array.chunks)[0])
 
     @property
     def chunk(self) -> int:
         """Number of frames that are decompressed together."""
-        array: Any = group_here(self.location)["grid_displacement"]
-        return int(array.chunks[0])
+        return int(self._grid_displacement().chunks[0])
 
     def displacement(self, rows: slice, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
         """Displacement [m] of the grid points in these frames, (frames, n, 3), written to `out` if given.
 
         InputError if the store cannot be read or holds a value that is not finite.
         """
+        array = self._grid_displacement()
         start, stop, _ = rows.indices(self.frames)
         if out is None:
             out = np.empty((max(stop - start, 0), self.n_points, 3), dtype=np.float32)
@@ -231,7 +235,6 @@ class Store:
             if reader is not None:
                 reader.read(start, stop, out.reshape(-1, GRID, GRID, 3))
             else:
-                array: Any = group_here(self.location)["grid_displacement"]
                 out[...] = np.asarray(array[start:stop]).reshape(out.shape)
         flat = out.reshape(-1)
         if not np.isfinite(np.dot(flat, flat)):  # one pass over the values, without temporary arrays
@@ -260,7 +263,19 @@ class Store:
             raise InputError(f"{self.location}: surface of poke {poke} has a value that is not finite")
         return rest, triangles, moved
 
+    def _grid_displacement(self) -> Any:
+        self._check_fields()
+        return group_here(self.location)["grid_displacement"]
+
+    def _check_fields(self) -> None:
+        if not self.has_fields:
+            raise InputError(
+                f"{self.location}: of this dataset only the tables are here, not its displacement fields:"
+                " --dataset states where it is now"
+            )
+
     def _array(self, name: str, rows: slice | None = None) -> NDArray[Any]:
+        self._check_fields()
         array: Any = group_here(self.location)[name]
         with reading(f"{self.location}: {name}"):
             return np.asarray(array[rows if rows is not None else slice(None)])

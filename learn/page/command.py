@@ -40,7 +40,7 @@ def main(
     run: Annotated[
         Path,
         typer.Argument(
-            help="Folder of a run of invariant-gnn or invariant-gnn-small, or the zip of --parts."
+            help="Folder of a run of invariant-gnn or invariant-gnn-small, covers, or the zip of --parts."
         ),
     ],
     dataset: Dataset = None,
@@ -57,7 +57,7 @@ def main(
         typer.Option(
             min=0,
             max=100,
-            help=f"Number of simulated test pokes to compare with. Default: {POKES}.",
+            help=f"Number of simulated test pokes to compare with. Default: {POKES}, 0 without the dataset.",
             show_default=False,
         ),
     ] = None,
@@ -89,7 +89,10 @@ def main(
                 )
             own = Parts.load(run)
         else:
-            own = parts_of(load(run, dataset=dataset), shapes=shape, pokes=POKES if pokes is None else pokes)
+            predictor = load(run, dataset=dataset)
+            if pokes is None:
+                pokes = POKES if predictor.store.has_fields else 0
+            own = parts_of(predictor, shapes=shape, pokes=pokes)
         if parts is not None:
             own.save(parts)
             console.print(f"{parts}: {parts.stat().st_size / 1e6:.1f} MB")

@@ -9,6 +9,7 @@ from learn.training.run_folder import (
     known_domain,
     load_run,
     open_dataset,
+    open_tables,
     read_log,
 )
 
@@ -26,5 +27,6 @@ __all__ = [
     "make_device",
     "make_process_group",
     "open_dataset",
+    "open_tables",
     "read_log",
 ]

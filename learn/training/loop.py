@@ -32,6 +32,7 @@ from learn.training.run_folder import (
     load_weights,
     recipe_of,
     save_checkpoint,
+    save_tables,
 )
 from learn.validity import domain_of
 
@@ -125,6 +126,8 @@ class Trainer:
             self.folder.mkdir(parents=True, exist_ok=True)
         log = Log(self.folder, epochs_done=self.epoch) if self.group.is_main else None
         try:
+            if self.group.is_main:
+                save_tables(self.folder, self.store)
             while self.epoch < self.recipe.epochs:
                 begun = time.perf_counter()
                 losses = self._epoch()

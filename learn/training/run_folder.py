@@ -3,6 +3,7 @@
 `last.pt` holds everything that training needs to resume; `best.pt` the weights of the best epoch on the
 validation part. Both carry the dataset's uuid, the recipe, the statistics and the domain of validity.
 `log.jsonl` has a line of JSON per epoch; TensorBoard events are added if tensorboardX is installed.
+`dataset.npz` has the dataset's small tables: what a prediction needs of it (`learn.data.tables`).
 """
 
 from __future__ import annotations
@@ -27,8 +28,10 @@ from learn._yaml import Finite, first_fault
 from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
 from learn.data.store import Store, open_store
+from learn.data.tables import TABLES, load_tables, tables_bytes
 from learn.errors import InputError
 from learn.models import MODELS, Model, make_model
+from learn.pretrained import folder_of
 from learn.training.recipe import Recipe, check_recipe
 from learn.validity import Domain, domain_of
 
@@ -228,8 +231,12 @@ def load_weights(model: Model, weights: dict[str, torch.Tensor], path: Path, nam
 
 
 def load_run(folder: Path | str) -> Run:
-    """Load the best model of a run's folder. InputError if there is none, or it is damaged."""
-    path = Path(folder) / BEST
+    """Load the best model of a run's folder, or of the network of this name that comes with the package.
+
+    InputError if there is none, or it is damaged.
+    """
+    folder = folder_of(folder)
+    path = folder / BEST
     data = _bytes_of(path)
     content = _content_of(data, path)
     recipe = recipe_of(content, path)
@@ -239,7 +246,7 @@ def load_run(folder: Path | str) -> Run:
     model.eval().requires_grad_(False)
     domain = content.get("domain")
     return Run(
-        folder=Path(folder),
+        folder=folder,
         recipe=recipe,
         statistics=statistics,
         uuid=content["uuid"],
@@ -288,6 +295,26 @@ def open_dataset(run: Run | Pretrained, dataset: Path | str | None = None, *, ve
         raise InputError(
             f"{error}: {run.folder} was trained on it; if it has moved, --dataset states where it is now"
         ) from None
+
+
+def save_tables(folder: Path, store: Store) -> None:
+    """Write the tables of its dataset to a run's folder. OSError if it cannot be."""
+    write_whole(folder / TABLES, tables_bytes(store))
+
+
+def open_tables(run: Run, dataset: Path | str | None = None) -> Store:
+    """The dataset of a run, where it is at hand, or its tables alone, which the run's folder has.
+
+    InputError if `dataset` is stated and cannot be opened, or neither is there.
+    """
+    tables = run.folder / TABLES
+    if dataset is not None or not tables.is_file():
+        return open_dataset(run, dataset, verify=False)
+    try:
+        store = open_dataset(run, verify=False)
+    except InputError:
+        return load_tables(tables)
+    return store if store.uuid == run.uuid else load_tables(tables)
 
 
 def known_domain(run: Run, store: Store) -> Domain | None:

@@ -21,6 +21,7 @@ import learn.predict
 import learn.train
 import learn.training
 from learn.data import open_store
+from learn.data.tables import TABLES
 from learn.errors import InputError
 from learn.evaluation import Evaluation, intervals_file
 from learn.evaluation.report import write_report
@@ -90,6 +91,11 @@ def _folder(run: Path) -> None:
     (run / "best.pt").mkdir()
 
 
+def _moved(run: Path) -> None:
+    _content(location="/nowhere/s.zarr")(run)
+    (run / TABLES).unlink()
+
+
 def _another_pickle(run: Path) -> None:
     torch.save([1, 2, 3], run / "best.pt")
 
@@ -115,7 +121,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
     "a weight is gone": (_weights(lambda w: w.pop("look.weight")), "does not fit model"),
     "a weight is not finite": (_weights(lambda w: w["look.weight"].fill_(float("nan"))), "look.weight"),
     "garbled domain": (_content(domain={"ranges": {"depth_mm": [1]}}), "domain: key "),
-    "dataset moved": (_content(location="/nowhere/s.zarr"), "if it has moved, --dataset states where"),
+    "dataset moved, no tables": (_moved, "if it has moved, --dataset states where"),
     "another dataset": (_content(uuid="other"), "trained on dataset other"),
 }
 

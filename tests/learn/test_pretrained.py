@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import learn
 from learn.cli import app
-from learn.data import MemoryDataset, open_store
+from learn.data import MemoryDataset, load_tables, open_store
+from learn.data.tables import TABLES
 from learn.errors import InputError
 from learn.evaluation import load_intervals, predict_part, summarise
 from learn.models import Scenes
@@ -17,6 +19,8 @@ from learn.training import load_run, open_dataset
 from tests.learn.commands import call, refused
 from tests.learn.real_store import write_real_store
 from tests.learn.small_store import write_store
+
+SCENE = Path(__file__).parents[2] / "datasets" / "scenes" / "lump.yaml"
 
 
 def test_the_readme_s_network_is_there() -> None:
@@ -32,6 +36,9 @@ def test_each_is_complete(name: str) -> None:
     assert (
         f"{sum(p.numel() for p in run.model.parameters()):,} parameters" in (folder / "card.md").read_text()
     )
+    tables = load_tables(folder / TABLES)
+    assert tables.uuid == run.uuid
+    assert tables.location == run.location
     assert "/" not in run.location  # of the machine that trained it
     with pytest.raises(InputError, match="no dataset there"):
         open_dataset(run)
@@ -44,6 +51,35 @@ def test_it_knows_simulated_pokes_of_shapes_that_it_was_not_trained_on(tmp_path:
     row = summarise(predict_part(model, Scenes.of(store), MemoryDataset(store, rows)))
     assert row["mean"].mean < 0.03  # mm, depths to 10 mm
     assert row["rel force"].mean < 0.05
+
+
+def test_one_answers_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing but the package is needed; the force rises steeply as the indenter nears the sphere."""
+    monkeypatch.chdir(tmp_path)
+    done = call(app, "predict", "covers", SCENE, "--out", "poke")
+    assert done.exit_code == 0, done.output
+    assert "Inside the trained ranges" in done.output
+    body = {"inclusion": {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 18]}, "shear_modulus_kPa": 30}
+    touch = learn.load("covers").real_time(body)
+    low, high = (touch(site=(0, 0), direction=(0, 0, -1), depth=d) for d in (2e-3, 4e-3))
+    beside = touch(site=(0.03, 0.03), direction=(0, 0, -1), depth=4e-3)
+    assert low.inside is True
+    assert low.force_interval is not None
+    assert high.force > 2.5 * low.force > 2.5 * 2 / 4 * beside.force
+
+
+def test_results_of_one_are_not_written_into_the_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = folder_of("covers")
+    before = {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
+    body = write_real_store(tmp_path / "s.zarr")
+    done = call(app, "evaluate", "covers", "--dataset", body, "--transfer", "--no-clouds", "--no-baselines")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "covers-evaluation" / "report.html").is_file()
+    assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == before
+    refused(call(app, "evaluate", "covers"), "covers.zarr: no dataset there")
 
 
 def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
