@@ -162,7 +162,7 @@ def test_pages_have_blocks_of_each_sort() -> None:
     assert sum(b.installs for b in readme) == 4
     assert sum(b.slow for b in readme) == 3
     assert sum(b.language == "python" for b in readme) == 1
-    assert len([b for b in readme if not (b.installs or b.slow)]) == 5
+    assert len([b for b in readme if not (b.installs or b.slow)]) == 6
     assert len(tutorial) == 10
     assert sum(b.slow for b in tutorial) == 1
     assert all(blocks(page) for page in PAGES)
