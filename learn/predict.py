@@ -44,7 +44,10 @@ Exit codes: 0 done, 2 bad input, or outside the training with --strict.
 
 def main(
     runs: Annotated[
-        list[Path], typer.Argument(help="Folder of a run, or covers, or folders of several runs to average.", metavar="RUN...")
+        list[Path],
+        typer.Argument(
+            help="Folder of a run, or covers, or folders of several runs to average.", metavar="RUN..."
+        ),
     ],
     scene: Annotated[Path, typer.Argument(help="YAML file with the poke.")],
     dataset: Dataset = None,

@@ -7,6 +7,7 @@ contribute there, and a mean over a denser cloud tends to the same integral.
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -203,7 +204,7 @@ class GeometryEncoder(nn.Module):
         """Codes and vectors of every inclusion of the scene."""
         levels = scene.rigid.shape[2]
         units = scene.height / (self.height or scene.height)
-        rigid = scene.rigid if units == 1.0 else _to_height(scene.rigid, units)
+        rigid = scene.rigid if math.isclose(units, 1.0) else _to_height(scene.rigid, units)
         binned = rigid.reshape(*rigid.shape[:2], BINS, levels // BINS).mean(dim=3)
         # thickness of the column above the inclusion, and of the rigid part
         clear = (scene.rigid.cumsum(dim=2) < 0.5).float().mean(dim=2, keepdim=True) * units

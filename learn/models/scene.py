@@ -58,6 +58,13 @@ class Scene:
         index[used] = place
         return replace(self, rigid=self.rigid[kept], rigid_index=index)
 
+    def over(self, interiors: Tensor) -> tuple[Scene, Tensor]:
+        """The same points over these interiors (b,) alone, and the index of each in the new scene."""
+        used, index = torch.unique(interiors, return_inverse=True)
+        kept, inclusion = torch.unique(self.rigid_index[used], return_inverse=True)
+        scene = replace(self, profile=self.profile[used], rigid=self.rigid[kept], rigid_index=inclusion)
+        return scene, index
+
     def at(self, points: NDArray[np.int64]) -> Scene:
         """Some of the points, by index."""
         some = torch.from_numpy(points).to(self.points.device)

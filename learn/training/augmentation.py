@@ -87,21 +87,26 @@ class Augmentation:
 
     def _augmented(self, k: int, batch: Batch, step: int) -> tuple[Scene, Any, Batch]:
         scene, prepared, recipe = self._scenes.scenes[k], self._prepared[k], self._recipe
-        device = batch.displacement.device
+        device, moved = batch.displacement.device, False
+        if (
+            device.type == "cpu"
+        ):  # other interiors would be encoded in vain; a GPU would have to be waited for
+            scene, index = scene.over(batch.geometry)
+            batch = replace(batch, geometry=index)
         jitter = self._random(_JITTER, step)
         if self.surfaces is not None and jitter.uniform() < recipe.point_jitter:
             points = jittered(self._setups[k], jitter)
             scene = over_same_columns(scene, self._setups[k], points)
-            moved = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
-            batch = replace(batch, displacement=moved.to(device))
+            there = torch.from_numpy(self.surfaces.displacement(batch.frame.cpu().numpy(), points))
+            batch, moved = replace(batch, displacement=there.to(device)), True
         dropout = self._random(_DROPOUT, step)
         if dropout.uniform() < recipe.point_dropout:
             n = len(scene.points)
             some = np.sort(dropout.choice(n, int(n * dropout.uniform(_FEWEST, 1)), replace=False))
             scene = scene.at(some)
-            index = torch.from_numpy(some).to(device)
-            batch = replace(batch, displacement=batch.displacement[:, index])
-        if scene is not self._scenes.scenes[k]:
+            kept = torch.from_numpy(some).to(device)
+            batch, moved = replace(batch, displacement=batch.displacement[:, kept]), True
+        if moved:
             prepared = self._prepare(scene)
         return scene, prepared, batch
 

@@ -87,7 +87,9 @@ def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     body = write_store(tmp_path / "b.zarr", shapes=1, softness=("S1",), sites=3, frames=2)
     done = call(app, "adapt", "covers", body, "--epochs", 1, "--threads", 1)
     assert done.exit_code == 0, done.output
-    assert load_run(tmp_path / "runs" / "adapted").pretrained is not None
+    adapted = load_run(tmp_path / "runs" / "adapted")
+    assert adapted.pretrained is not None
+    assert load_tables(adapted.folder / TABLES).uuid == adapted.uuid
     refused(
         call(app, "adapt", "cover", body, "--out", "other"),
         "cover: no such folder, expected that of a run, or one of covers",

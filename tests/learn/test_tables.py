@@ -6,6 +6,7 @@ import dataclasses
 import io
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ WRITE: dict[str, Callable[[Path], Path]] = {
 
 
 @pytest.mark.parametrize("kind", WRITE)
-def test_the_tables_are_the_dataset_s(kind: str, tmp_path: Path) -> None:
+def test_the_tables_are_the_dataset_s(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store = open_store(WRITE[kind](tmp_path / "s.zarr"))
     (tmp_path / TABLES).write_bytes(tables_bytes(store))
     tables = load_tables(tmp_path / TABLES)
@@ -75,6 +76,9 @@ def test_the_tables_are_the_dataset_s(kind: str, tmp_path: Path) -> None:
     if store.clock is not None and tables.clock is not None:
         assert all(_same(v, getattr(tables.clock, k)) for k, v in vars(store.clock).items())
     assert (store.has_fields, tables.has_fields) == (True, False)
+    assert tables.address == store.address  # wherever one stands
+    monkeypatch.chdir(tmp_path)
+    assert replace(tables, location="s.zarr").address == "s.zarr"
 
 
 def test_fields_are_asked_of_the_dataset(store: Path, tmp_path: Path) -> None:

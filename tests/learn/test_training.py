@@ -7,8 +7,10 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from torch import Tensor
@@ -17,7 +19,7 @@ from typer.testing import CliRunner
 import learn.training.loop
 from learn.data import open_store
 from learn.errors import InputError
-from learn.models import MODELS
+from learn.models import MODELS, Scenes, pokes_of
 from learn.progress import Progress
 from learn.train import app
 from learn.training import DivergedError, ProcessGroup, Recipe, Trainer, load_recipe, load_run, read_log
@@ -349,6 +351,29 @@ def test_batches_prepared_in_advance_train_the_same(folder: Path, tmp_path: Path
         trainer.train()
         weights.append(_weights(tmp_path / f"run{ahead}"))
     assert _same(*weights)
+
+
+@pytest.mark.parametrize("model", ["invariant-gnn-small", "cegnn"])
+def test_a_step_encodes_the_interiors_of_its_batch_alone(tmp_path: Path, model: str) -> None:
+    """What is predicted is as over all interiors; both models, of which one reads the profile itself."""
+    recipe = TINY.model_copy(update={"model": model, "batch": 2, "point_dropout": 0.0})
+    store = open_store(write_store(tmp_path / "s.zarr", shapes=5, sites=1, frames=2))
+    trainer = Trainer(store, recipe, tmp_path / "run")
+    scene_of_all, seen = Scenes.of(store).scenes[0], set()
+    trainer.model.eval()
+    for _, parts in trainer.augmentation.each(trainer.train_data.batches(2, seed=1, epoch=0), 0):
+        [(scene, prepared, batch)] = parts
+        assert prepared is trainer.prepared[0]
+        assert len(scene.profile) == len(batch.geometry.unique())
+        seen.add(len(scene.rigid))
+        interior = torch.from_numpy(store.geometry[store.frame_poke[batch.frame.numpy()]])
+        with torch.no_grad():
+            one = trainer.model(scene, pokes_of(batch))
+            other = trainer.model(scene_of_all, pokes_of(replace(batch, geometry=interior)))
+        torch.testing.assert_close(one.displacement, other.displacement, rtol=0, atol=1e-9)
+        torch.testing.assert_close(one.force, other.force, rtol=1e-4, atol=0)
+    assert seen == {1, 2}  # inclusions
+    assert len(np.unique(store.shape[store.frame_poke[trainer.split.train]])) > 2
 
 
 def test_best_weights_without_their_training_are_not_overwritten(folder: Path, tmp_path: Path) -> None:
