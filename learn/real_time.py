@@ -1,7 +1,8 @@
 """Predictions in real time (about 1 kHz): one interior, then poke by poke.
 
->>> predictor = learn.load("runs/quick")
->>> touch = predictor.real_time({"shape": "cube-18", "softness": "S0.5"})  # once an interior
+>>> lump = {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 17]}
+>>> predictor = learn.load("covers")
+>>> touch = predictor.real_time({"inclusion": lump, "shear_modulus_kPa": 12})  # once an interior
 >>> answer = touch(site=(5e-3, -10e-3), direction=(0, 0, -1), depth=4e-3)  # each millisecond
 >>> answer.force, answer.force_interval, answer.displacement, answer.inside
 

@@ -138,12 +138,16 @@ class Coverage:
     Attributes
     ----------
     points, force : over all points and over all frames.
+    points_error, force_error : standard errors of both, as estimates for other shapes: each shape is one draw
+        (each poke, where there are fewer than `LEAST_SHAPES` shapes); NaN for a single draw.
     rings : fraction of points by ring of distance from first contact; NaN if there are none.
     pokes : fraction of pokes with at least the promised fraction of points covered.
     """
 
     points: float
     force: float
+    points_error: float
+    force_error: float
     rings: list[float]
     pokes: float
 
@@ -200,23 +204,36 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
     """Coverage of the intervals on these predictions; `distance` is as in `Intervals.radius_mm`."""
     inside = predictions.distance_mm <= intervals.radius_mm(predictions, distance=distance)
     ring = _ring(predictions.away)
+    known = _force_error(predictions) <= intervals.force_log(
+        predictions.force_spread, size_gap=predictions.size_gap, distance=distance
+    )
     each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
+    shapes = len(np.unique(predictions.shape)) >= LEAST_SHAPES
+    draw = predictions.shape if shapes else predictions.poke
     return Coverage(
         points=float(inside.mean()),
-        force=float(
-            (
-                _force_error(predictions)
-                <= intervals.force_log(
-                    predictions.force_spread, size_gap=predictions.size_gap, distance=distance
-                )
-            ).mean()
-        ),
+        force=float(known.mean()),
+        points_error=_standard_error(inside.mean(axis=1), draw),
+        force_error=_standard_error(known, draw),
         rings=[
             float(inside[ring == k].mean()) if (ring == k).any() else float("nan")
             for k in range(len(RING_EDGES_MM) - 1)
         ],
         pokes=float((np.array(each) >= intervals.promised).mean()),
     )
+
+
+def _standard_error(share: NDArray[Any], draw: NDArray[Any]) -> float:
+    """Standard error of the mean over frames (f,), of which those of one draw belong together.
+
+    That of a ratio of the draws' sums (Cochran, Sampling Techniques, 1977, eq. 2.46).
+    """
+    _, place, counts = np.unique(draw, return_inverse=True, return_counts=True)
+    k = len(counts)
+    if k < 2:
+        return float("nan")
+    rest = np.bincount(place, share - share.mean())
+    return float(np.sqrt(k / (k - 1) * (rest**2).sum()) / counts.sum())
 
 
 def pooled_quantile(scores: Floats, poke: NDArray[np.int64], level: float) -> float:

@@ -6,7 +6,7 @@ import base64
 import json
 from dataclasses import asdict
 from itertools import pairwise
-from math import inf, isfinite
+from math import hypot, inf, isfinite
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -164,13 +164,19 @@ def _interval_row(name: str, entries: list[Covered]) -> list[str]:
         f"{entries[0].intervals.level:.0%}",
         str(min(c.intervals.pokes for c in entries)),
         f"{min(c.intervals.promised for c in entries):.0%}",
-        f"{fmean(c.found.points for c in entries):.1%}",
+        _with_error([(c.found.points, c.found.points_error) for c in entries]),
         *(f"{fmean(ring):.1%}" if ring else "-" for ring in rings),
-        f"{fmean(c.found.force for c in entries):.1%}",
+        _with_error([(c.found.force, c.found.force_error) for c in entries]),
         f"{fmean(c.found.pokes for c in entries):.0%}",
         f"{fmean(c.radius_mm for c in entries):.4f}",
         f"{fmean(c.rank for c in entries):.2f}",
     ]
+
+
+def _with_error(shares: list[tuple[float, float]]) -> str:
+    """Mean of shares with its standard error: "91.2% ± 1.4"; without one, if it is not known of each."""
+    error = hypot(*(error for _, error in shares)) / len(shares)
+    return f"{fmean(share for share, _ in shares):.1%}" + (f" ± {100 * error:.1f}" if isfinite(error) else "")
 
 
 def interval_table(found: Evaluation) -> Table:
@@ -248,10 +254,11 @@ def tables(found: Evaluation) -> dict[str, tuple[Table, list[str]]]:
             [
                 *no_intervals(found),
                 "Conformal, calibrated on the validation pokes in five parts, each poke one draw, in rings "
-                "of distance from first contact; counted on test pokes. Frames inside what was trained "
-                "calibrate, outside the intervals are wider. Few pokes cannot promise 90 %. By the other "
-                "folds: calibrated on the predictions by runs of other folds for unseen shapes; kept with "
-                "the run.",
+                "of distance from first contact; counted on test pokes. ± is the standard error of what is "
+                "counted, the shapes (below five of them, the pokes) being a sample. Frames inside what "
+                "was trained calibrate, outside the intervals are wider. Few pokes cannot promise 90 %. By "
+                "the other folds: calibrated on the predictions by runs of other folds for unseen shapes; "
+                "kept with the run.",
             ],
         ),
     }

@@ -123,6 +123,29 @@ def test_a_worse_model_is_not_covered() -> None:
     assert found.pokes == 0
 
 
+def test_the_coverage_of_another_sample_is_off_by_the_stated_error() -> None:
+    """Samples of 40 pokes that differ; errors of a single point count for nothing beside that."""
+    intervals = fit_intervals(_noisy(200, 0, apart=0.8))
+    found = [coverage(intervals, _noisy(40, 50 + seed, apart=0.8)) for seed in range(80)]
+    for name in ("points", "force"):
+        scatter = np.std([getattr(c, name) for c in found])
+        assert np.mean([getattr(c, f"{name}_error") for c in found]) == pytest.approx(scatter, rel=0.25)
+        assert scatter > 0.01
+
+
+def test_pokes_of_one_shape_are_one_draw() -> None:
+    """Repeated pokes say no more of other shapes; with few shapes the pokes are the draws."""
+    intervals, test = fit_intervals(_noisy(60, 0)), _noisy(20, 1, apart=0.8)
+    again = dataclasses.replace(test, poke=test.poke + 20)
+    each = [dataclasses.replace(one, shape=(one.poke % 20).astype(str)) for one in (test, again)]
+    alone, twice = (coverage(intervals, part) for part in (each[0], join_predictions(each)))
+    assert twice.points_error == pytest.approx(alone.points_error, rel=1e-9)
+    two = [dataclasses.replace(one, shape=(one.poke % 2).astype(str)) for one in (test, again)]
+    assert coverage(intervals, two[0]).points_error == pytest.approx(alone.points_error, rel=1e-9)
+    assert coverage(intervals, join_predictions(two)).points_error < 0.75 * alone.points_error
+    assert np.isnan(coverage(intervals, test.where(test.poke == 0)).points_error)
+
+
 def test_one_poke_is_not_enough() -> None:
     with pytest.raises(InputError, match="at least two validation pokes"):
         fit_intervals(_noisy(1, 0))
