@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,14 +62,8 @@ def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path, of: str = "")
     curves.legend(title="material level")
     curves.set(xlabel="depth [mm]", ylabel="force on the rod [N]", title="all frames")
     _top(plan, traces, top, figure)
-    temporary = path.with_name(f".{path.name}.tmp")
-    try:
-        figure.savefig(temporary, format="png", metadata={"Title": _TITLE, "Description": of})
-        temporary.replace(path)
-    except OSError:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part:
+        figure.savefig(part, format="png", metadata={"Title": _TITLE, "Description": of})
 
 
 def preview_of(path: Path) -> str | None:
