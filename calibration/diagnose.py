@@ -8,17 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from calibration.cli import (
-    Measured,
-    Seed,
-    Version,
-    Workers,
-    check_folder,
-    command,
-    elapsed,
-    names_in,
-    plain_ends,
-)
+from calibration.cli import Measured, Seed, Workers, check_folder, command, elapsed, names_in, plain_ends
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.results import DiagnosisResult

@@ -10,8 +10,9 @@ from typing import Annotated, Any
 import typer
 
 from calibration._files import write_whole
-from calibration.cli import Version, command, plain_ends
+from calibration.cli import command, plain_ends
 from calibration.errors import InputError, OptionError
+from tisim.options import Version
 
 app = command()
 
