@@ -50,8 +50,8 @@ def main(
         str, typer.Option(help="Effects to leave out of the catalogue, separated by commas.")
     ] = "",
     simulator: Annotated[
-        str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
-    ] = "ours",
+        str, typer.Option(help="Simulator whose own faults are looked for as well: tisim, or another's name.")
+    ] = "tisim",
     law: Annotated[
         str,
         typer.Option(
