@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -12,13 +12,11 @@ from matplotlib.patches import Polygon, Rectangle
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
 
+from factory._record import Trace
 from factory._sampling import grid_points
 from factory.plan import Plan
 from factory.reader import Dataset, PokeData
 from tisim.io.whole import whole_file
-
-if TYPE_CHECKING:
-    from factory._report import Trace
 
 _INCLUSION: dict[str, Any] = {"facecolor": "#fdae6b", "edgecolor": "#e6550d", "alpha": 0.25}
 COLOURS = ("#08306b", "#2171b5", "#6baed6", "#9ecae1", "#c6dbef")

@@ -27,7 +27,7 @@ from factory._build import build_dataset
 from factory._errors import InputError
 from factory._execution import run_poke
 from factory._figures import draw_preview
-from factory._report import Trace
+from factory._record import Trace
 from factory._sampling import grid_points, level_depths, profiles
 from factory._schema import SPECS
 from factory._store import write_manifest
