@@ -97,6 +97,8 @@ def _put_in(problem: Any, data: dict[str, Any], names: list[str], asker: Nobody)
         node.pop(loc[0], None)
         return True
     text, value = _EXPECTED.get(key, ("it here", None))
+    if problem["type"] == "own_check" and "beside" in problem["ctx"]["text"]:
+        text += f", beside {problem['ctx']['text'].rpartition(' beside ')[2]}"  # which may be what is wrong
     asker.lack(f"{where}{key}", text, behind=f"{where}{key}")
     if key == "id":
         value = f"trial {number + 1}"
