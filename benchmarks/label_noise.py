@@ -28,6 +28,7 @@ from rich.progress import track
 from rich.table import Table
 
 import tisim
+from benchmarks.whole import whole_file
 from factory._record import first_touch
 from factory._sampling import SIZE, grid_points, interpolation
 from factory.plan import PlannedPoke, make_plan
@@ -56,17 +57,16 @@ def solved(poke: PlannedPoke, refinement: float, folder: Path) -> Solved:
         result = tisim.simulate([scene], workers=1)[0]
         points = grid_points(scene.block.size).reshape(-1, 3)
         at = interpolation(result.mesh.nodes, result.mesh.facet_sets["top"], points)
-        part = path.with_suffix(".part.npz")
-        np.savez(
-            part,
-            allow_pickle=False,
-            depth=result.load,
-            grid=at(result.positions - result.mesh.nodes),
-            force=np.linalg.norm(result.rod_force, axis=1),
-            nodes=result.mesh.n_nodes,
-            status=str(result.status),
-        )
-        part.replace(path)
+        with whole_file(path) as file:
+            np.savez(
+                file,
+                allow_pickle=False,
+                depth=result.load,
+                grid=at(result.positions - result.mesh.nodes),
+                force=np.linalg.norm(result.rod_force, axis=1),
+                nodes=result.mesh.n_nodes,
+                status=str(result.status),
+            )
     with np.load(path) as kept:
         return Solved(kept["depth"], kept["grid"], kept["force"], int(kept["nodes"]), str(kept["status"]))
 

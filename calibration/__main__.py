@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import sys
 
-import typer
 from rich.console import Console
 from rich.table import Table
 
-from calibration.cli import VERBS, command, installed_version
+from calibration.cli import VERBS, command
+from tisim.options import Version
 
 app = command()
 
 
 @app.command()
 def main(
-    version: bool = typer.Option(False, "--version", help="Show the version and exit."),
+    version: Version = False,  # noqa: ARG001 - shown before anything else
 ) -> None:
     """List the commands of calibration; each has a --help of its own."""
-    if version:
-        typer.echo(f"tisim {installed_version()}")
-        return
     table = Table(box=None, show_header=False, pad_edge=False)
     for name, purpose in VERBS.items():
         table.add_row(f"python -m calibration.{name}", purpose)

@@ -168,7 +168,7 @@ def diagnose(
     *,
     domain: str | None = None,
     without: str | Sequence[str] = (),
-    simulator: str = "ours",
+    simulator: str = "tisim",
     law: str = "auto",
     gain: bool = True,
     noise: str = "stated",

@@ -8,7 +8,6 @@ import errno
 import math
 import time
 from collections.abc import Iterator, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -55,28 +54,10 @@ VERBS = {
 }
 
 
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"tisim {installed_version()}")
-        raise typer.Exit
-
-
-def installed_version() -> str:
-    """Version of the installed package, "not installed" in a folder of sources."""
-    try:
-        return version("tisim")
-    except PackageNotFoundError:
-        return "not installed"
-
-
 Measured = Annotated[Path, typer.Argument(help="Folder with experiment.yaml.")]
 Laws = Annotated[str, typer.Option(help=f"Laws, separated by commas, or all: {', '.join(laws.names())}.")]
 Workers = Annotated[int | None, typer.Option(help="Number of processes. Default: one per core.", min=1)]
 Seed = Annotated[int, typer.Option(help="Seed of the random numbers, 0 or more.")]
-Version = Annotated[
-    bool,
-    typer.Option("--version", help="Show the version and exit.", callback=_show_version, is_eager=True),
-]
 
 
 def command() -> typer.Typer:

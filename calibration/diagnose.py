@@ -8,17 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from calibration.cli import (
-    Measured,
-    Seed,
-    Version,
-    Workers,
-    check_folder,
-    command,
-    elapsed,
-    names_in,
-    plain_ends,
-)
+from calibration.cli import Measured, Seed, Workers, check_folder, command, elapsed, names_in, plain_ends
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.results import DiagnosisResult
@@ -59,8 +50,8 @@ def main(
         str, typer.Option(help="Effects to leave out of the catalogue, separated by commas.")
     ] = "",
     simulator: Annotated[
-        str, typer.Option(help="Simulator whose own faults are looked for as well: ours, or another's name.")
-    ] = "ours",
+        str, typer.Option(help="Simulator whose own faults are looked for as well: tisim, or another's name.")
+    ] = "tisim",
     law: Annotated[
         str,
         typer.Option(

@@ -15,8 +15,9 @@ from typing import Annotated
 
 import typer
 
-from calibration.cli import Version, command, plain_ends
+from calibration.cli import command, plain_ends
 from calibration.errors import InputError
+from tisim.options import Version
 
 app = command()
 

@@ -9,19 +9,9 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from calibration.cli import (
-    FitScreen,
-    Laws,
-    Measured,
-    Seed,
-    Version,
-    Workers,
-    command,
-    law_table,
-    names_in,
-    plain_ends,
-)
+from calibration.cli import FitScreen, Laws, Measured, Seed, Workers, command, law_table, names_in, plain_ends
 from calibration.fit_request import FitRequest
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.fit_plan import FitPlan

@@ -11,8 +11,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from calibration.cli import Seed, Version, Workers, check_folder, command, elapsed, names_in, plain_ends
+from calibration.cli import Seed, Workers, check_folder, command, elapsed, names_in, plain_ends
 from calibration.errors import InputError
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.results import PredictionResult

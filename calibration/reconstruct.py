@@ -14,8 +14,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from calibration.cli import Version, command, plain_ends
+from calibration.cli import command, plain_ends
 from calibration.errors import InputError
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.progress import Progress

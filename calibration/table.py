@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from calibration.cli import FitScreen, Laws, Measured, Version, Workers, check_folder, command, plain_ends
+from calibration.cli import FitScreen, Laws, Measured, Workers, check_folder, command, plain_ends
 from calibration.errors import InputError
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from calibration.experiment import Experiment

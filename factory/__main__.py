@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from factory import build, card, inspect, release, verify
-from factory._cli import Version
+from tisim.options import Version
 
 app = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
 for _module in (build, inspect, verify, card, release):

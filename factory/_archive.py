@@ -6,6 +6,8 @@ The shards are already compressed: the zip stores them as they are, and they are
 from __future__ import annotations
 
 import contextlib
+import fcntl
+import glob
 import hashlib
 import json
 import os
@@ -14,10 +16,12 @@ import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from factory._errors import InputError, one_line
-from factory._staging import sync_folder
+from factory._staging import sync_folder, write_atomic
 from factory._store import LEDGER, MANIFEST, DamagedError, file_faults, manifest_faults, plain_files
+from tisim.io.whole import whole_file, whole_name
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date of a zip entry
 _MODE = 0o100644 << 16  # a regular file, readable by all
@@ -48,7 +52,7 @@ class Released:
 def release_store(store: Path, target: Path) -> Released:
     """Write one zip of a store with its checksum beside it; the same store gives the same bytes.
 
-    It is written under a temporary name, reopened and compared with the store's manifest, and only then
+    It is written under a name drawn for it, reopened and compared with the store's manifest, and only then
     renamed: a killed run leaves no file that looks complete, and the next run starts again.
 
     Raises
@@ -60,29 +64,24 @@ def release_store(store: Path, target: Path) -> Released:
     check_release(store, target)
     check_sound(store)
     sums = sums_file(target)
-    partial, noted = (path.with_name(f".{path.name}.partial") for path in (target, sums))
-    try:
-        _write(store, partial)
-        faults = zip_faults(partial)
+    _remove_parts(target)
+    with whole_file(target) as part, part.open("xb") as handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        _write(store, handle)
+        faults = zip_faults(part)
         if not faults:
-            faults = _other_outside(store, partial)
+            faults = _other_outside(store, part)
         if faults:
             raise DamagedError(f"{target}: the zip is not as the store ({faults[0]}): is the disk sound?")
-        sha256 = _sha256(partial)
+        sha256 = _sha256(part)
         line = f"{sha256}  {target.name}\n"
         if sums.exists() and sums.read_text(encoding="utf-8", errors="replace") != line:
             raise InputError(f"{sums}: exists and states another sum: remove it, or give another --out")
-        noted.write_text(line, encoding="utf-8")
-        noted.replace(sums)  # before the zip, so that a complete zip has its checksum
-        size = partial.stat().st_size
-        with zipfile.ZipFile(partial) as archive:
+        write_atomic(sums, line.encode())  # before the zip, so that a complete zip has its checksum
+        size = part.stat().st_size
+        with zipfile.ZipFile(part) as archive:
             count = len(archive.namelist())
-        partial.replace(target)
-        sync_folder(target.parent)
-    finally:
-        for path in (partial, noted):
-            with contextlib.suppress(OSError):
-                path.unlink(missing_ok=True)
+    sync_folder(target.parent)
     return Released(target, sums, sha256, count, size)
 
 
@@ -111,17 +110,26 @@ def check_sound(store: Path) -> None:
         raise DamagedError(f"{store}: the dataset is damaged: {faults[0]}{more}")
 
 
-def _write(store: Path, path: Path) -> None:
-    with path.open("wb") as handle:
-        with zipfile.ZipFile(handle, "w", zipfile.ZIP_STORED, strict_timestamps=True) as archive:
-            for name, source, _ in plain_files(store):
-                entry = zipfile.ZipInfo(name, _DATE)
-                entry.create_system, entry.external_attr = 3, _MODE  # the same on every system
-                big = source.stat().st_size > _BIG
-                with source.open("rb") as file, archive.open(entry, "w", force_zip64=big) as out:
-                    shutil.copyfileobj(file, out, _BLOCK)
-        handle.flush()
-        os.fsync(handle.fileno())
+def _remove_parts(target: Path) -> None:
+    """Remove the parts that killed runs left, each as large as the store; those locked are being written."""
+    for part in target.parent.glob(f"{glob.escape(target.name)}.*.part"):
+        if whole_name(part.name) != target.name:
+            continue
+        with contextlib.suppress(OSError), part.open("rb") as handle:  # then it stays, and harms nothing
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            part.unlink()
+
+
+def _write(store: Path, handle: BinaryIO) -> None:
+    with zipfile.ZipFile(handle, "w", zipfile.ZIP_STORED, strict_timestamps=True) as archive:
+        for name, source, _ in plain_files(store):
+            entry = zipfile.ZipInfo(name, _DATE)
+            entry.create_system, entry.external_attr = 3, _MODE  # the same on every system
+            big = source.stat().st_size > _BIG
+            with source.open("rb") as file, archive.open(entry, "w", force_zip64=big) as out:
+                shutil.copyfileobj(file, out, _BLOCK)
+    handle.flush()
+    os.fsync(handle.fileno())
 
 
 def zip_faults(path: Path) -> list[str]:

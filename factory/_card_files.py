@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import tempfile
 from pathlib import Path
 
 from factory._card import Facts
@@ -32,10 +32,11 @@ def write_card(facts: Facts, out: Path) -> None:
     """Write the card's files (`FILES`) into a temporary folder, then move them to `out`."""
     out = out.absolute()  # "." has no name
     out.parent.mkdir(parents=True, exist_ok=True)
-    beside = out.with_name(f".{out.name}.partial")
-    shutil.rmtree(beside, ignore_errors=True)
-    beside.mkdir()
-    try:
+    # under a name drawn for it: two processes never write into the same one
+    with tempfile.TemporaryDirectory(
+        prefix=f".{out.name}-", dir=out.parent, ignore_cleanup_errors=True
+    ) as made:
+        beside = Path(made)
         data, summary = facts.data, facts.summary
         write_features(facts.rows, beside / "features.csv")
         write_softness(summary.model, summary.done, summary.levels, beside / "softness.csv")
@@ -48,5 +49,3 @@ def write_card(facts: Facts, out: Path) -> None:
         out.mkdir(exist_ok=True)
         for name in reversed(FILES):  # the page last, so that all files it refers to exist
             (beside / name).replace(out / name)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""Common code of the commands: applications, --version, console, log, and errors of one sentence.
+"""Common code of the commands: applications, console, log, and errors of one sentence.
 
 Imported before everything else of the factory, so that `--help` does not wait for the simulator.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import importlib
-import importlib.metadata
 import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -28,24 +27,6 @@ def make_app(command: Callable[..., None], epilog: str) -> typer.Typer:
     return app
 
 
-def version() -> str:
-    """Version of the installed distribution, or of the sources in a checkout that was not installed."""
-    try:
-        return importlib.metadata.version("tisim")
-    except importlib.metadata.PackageNotFoundError:
-        return str(getattr(importlib.import_module("tisim"), "__version__", "source"))
-
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"tisim {version()}")
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool,
-    typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
-]
 Plugins = Annotated[
     list[str] | None,
     typer.Option(

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -13,13 +12,11 @@ from matplotlib.patches import Polygon, Rectangle
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
 
+from factory._record import Trace
 from factory._sampling import grid_points
 from factory.plan import Plan
 from factory.reader import Dataset, PokeData
 from tisim.io.whole import whole_file
-
-if TYPE_CHECKING:
-    from factory._report import Trace
 
 _INCLUSION: dict[str, Any] = {"facecolor": "#fdae6b", "edgecolor": "#e6550d", "alpha": 0.25}
 COLOURS = ("#08306b", "#2171b5", "#6baed6", "#9ecae1", "#c6dbef")
@@ -63,14 +60,8 @@ def draw_preview(plan: Plan, traces: dict[int, Trace], path: Path, of: str = "")
     curves.legend(title="material level")
     curves.set(xlabel="depth [mm]", ylabel="force on the rod [N]", title="all frames")
     _top(plan, traces, top, figure)
-    temporary = path.with_name(f".{path.name}.tmp")
-    try:
-        figure.savefig(temporary, format="png", metadata={"Title": _TITLE, "Description": of})
-        temporary.replace(path)
-    except OSError:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part:
+        figure.savefig(part, format="png", metadata={"Title": _TITLE, "Description": of})
 
 
 def preview_of(path: Path) -> str | None:

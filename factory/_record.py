@@ -77,6 +77,23 @@ class Outcome:
     core: float = 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One poke in the preview.
+
+    Attributes
+    ----------
+    depth, force : ndarray, shape (frames,)
+        Travel of the indenter [m] and magnitude of the force on it [N].
+    grid : ndarray, shape (32, 32, 3), or None
+        Displacement of the grid in the deepest frame [m].
+    """
+
+    depth: NDArray[np.float64]
+    force: NDArray[np.float64]
+    grid: NDArray[np.float32] | None
+
+
 def record(scene: Poke, result: Result) -> Arrays:
     """Arrays stored for one poke (names and units as in `_schema`); ValueError if the result is invalid."""
     mesh = result.mesh

@@ -12,7 +12,6 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -23,6 +22,7 @@ from factory._course import HoldRecipe, deepest
 from factory._effects import TAKEN
 from factory._errors import InputError, describe_os_error
 from factory._parts import part_entries
+from factory._record import Trace
 from factory._staging import Staging
 from factory._store import manifest_digest, read_ledger
 from factory.plan import Plan
@@ -127,23 +127,6 @@ def _seconds_after_loading(plan: Plan) -> float:
         travelled = np.ceil(moves[moves > 0.0] / LARGEST_STEP).sum() - deepest(scene) / LARGEST_STEP
         each.append(SECONDS_A_STEP * (max(travelled, 0.0) + (moves == 0.0).sum()))
     return fmean(each)
-
-
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """One poke in the preview.
-
-    Attributes
-    ----------
-    depth, force : ndarray, shape (frames,)
-        Travel of the indenter [m] and magnitude of the force on it [N].
-    grid : ndarray, shape (32, 32, 3), or None
-        Displacement of the grid in the deepest frame [m].
-    """
-
-    depth: NDArray[np.float64]
-    force: NDArray[np.float64]
-    grid: NDArray[np.float32] | None
 
 
 def traces_of(data: Dataset) -> dict[int, Trace]:

@@ -35,6 +35,7 @@ from factory._errors import InputError, one_line
 from factory._record import Outcome, check_arrays
 from factory._store import read_json
 from factory.plan import PlannedPoke
+from tisim.io.whole import whole_file
 
 log = logging.getLogger(__name__)
 _RESULT = re.compile(r"poke-(\d{5,})\.npz")
@@ -273,17 +274,10 @@ def set_damaged_aside(staging: Staging, pokes: Sequence[PlannedPoke]) -> list[in
 
 def write_atomic(path: Path, content: bytes) -> None:
     """Write a file that appears complete or not at all, and survives a power failure."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part, part.open("xb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
     sync_folder(path.parent)
 
 

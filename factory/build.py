@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from factory._bundled import recipe_names
-from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
+from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors
 from factory._errors import InputError
 from tisim import laws
+from tisim.options import Version
 from tisim.parallel.termination import terminable
 
 if TYPE_CHECKING:

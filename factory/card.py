@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors
+from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors
+from tisim.options import Version
 
 EXAMPLES = """
 [bold]Examples[/bold]

@@ -11,7 +11,6 @@ import typer
 
 from factory._cli import (
     Plugins,
-    Version,
     duration,
     import_plugins,
     make_app,
@@ -21,6 +20,7 @@ from factory._cli import (
     size_text,
 )
 from factory._errors import InputError
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from factory._cli import Plugins, Version, import_plugins, make_app, make_console, shown_errors, size_text
+from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors, size_text
 from factory._errors import InputError
+from tisim.options import Version
 
 EXAMPLES = """
 [bold]Example[/bold]

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from factory._cli import Plugins, Version, counted, import_plugins, make_app, make_console, shown_errors
+from factory._cli import Plugins, counted, import_plugins, make_app, make_console, shown_errors
 from factory._errors import InputError
+from tisim.options import Version
 
 if TYPE_CHECKING:
     from rich.console import Console

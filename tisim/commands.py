@@ -19,7 +19,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from tisim._options import Version
+from tisim.options import Version
 
 GROUP = "tisim.verbs"
 

@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from benchmarks.whole import write_whole
+
 if TYPE_CHECKING:
     from calibration.diagnosis import Diagnosis, MeasurementModel
 
@@ -120,9 +122,7 @@ class VerdictFile:
 
     def add(self, key: str, answer: Verdict) -> None:
         self.answers[key] = answer
-        part = self.path.with_suffix(".part")
-        part.write_text(json.dumps(self.answers), encoding="utf-8")
-        part.replace(self.path)
+        write_whole(self.path, json.dumps(self.answers))
 
 
 def catalogue() -> tuple[str, ...]:

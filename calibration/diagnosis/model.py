@@ -11,7 +11,7 @@ from calibration.experiment.model import Experiment
 from calibration.measurements._kinds import build, kind_of
 from calibration.measurements._model import MeasurementModel
 
-DEFAULT_SIMULATOR = "ours"
+DEFAULT_SIMULATOR = "tisim"
 
 
 def model_of(

@@ -53,6 +53,14 @@ def load(text: bytes, path: Path) -> Any:
         raise InputError(f"{path}: {line}{expected}") from None
 
 
+def top_level(text: bytes, path: Path) -> dict[Any, Any]:
+    """The keys and values of a YAML file. InputError as `load`, or if it is a list or a single value."""
+    data = load(text, path)
+    if not isinstance(data, dict):
+        raise InputError(f"{path}: expected keys and values at the top level")
+    return data
+
+
 def parse(text: bytes, path: Path, model: type[M]) -> M:
     """The file's content as `model`.
 
@@ -70,9 +78,7 @@ def parse(text: bytes, path: Path, model: type[M]) -> M:
     InputError
         One sentence that names the file, the key and what was expected.
     """
-    data = as_tuples(load(text, path))
-    if not isinstance(data, dict):
-        raise InputError(f"{path}: expected keys and values at the top level")
+    data: Any = as_tuples(top_level(text, path))
     try:
         return model.model_validate(data)
     except ValidationError as error:
@@ -116,8 +122,7 @@ def sentence(error: ValidationError, data: dict[Any, Any]) -> str:
 
 def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
     # an unknown key comes first: it explains the key that is missing in its place
-    every = [e for e in error.errors(include_url=False) if not _follows(e)]
-    problems = sorted(every, key=lambda e: e["type"] != "unknown_key")
+    problems = sorted(problems_of(error), key=lambda e: e["type"] != "unknown_key")
     first = problems[0]
     context: dict[str, Any] = first.get("ctx", {})
     own = [int(p) if p.isdigit() else p for p in str(context["key"]).split(".")] if "key" in context else []
@@ -142,9 +147,13 @@ def _sentence(error: ValidationError, data: dict[Any, Any]) -> str:
     return f"{what} {where}: {reason}{got}{context.get('also', '')}{_others(problems[1:], data)}"
 
 
-def _follows(problem: Any) -> bool:
-    """True for entries that are said to be too few since pydantic counts those that are right alone."""
-    return problem["type"] == "too_short" and len(problem["input"]) >= problem["ctx"]["min_length"]
+def problems_of(error: ValidationError) -> list[Any]:
+    """A model's problems, without lists said to be too short since pydantic counts right entries alone."""
+    return [
+        e
+        for e in error.errors(include_url=False)
+        if e["type"] != "too_short" or len(e["input"]) < e["ctx"]["min_length"]
+    ]
 
 
 def _others(problems: Sequence[Any], data: dict[Any, Any]) -> str:

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from calibration.cli import Version, command, plain_ends
+from calibration.cli import command, plain_ends
+from tisim.options import Version
 
 app = command()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, model_validator
@@ -24,7 +23,7 @@ from calibration.experiment._fields import (
 )
 from calibration.experiment._poke import InclusionEntry, Lengths3, RodEntry
 from calibration.experiment._read import MaterialEntry
-from calibration.experiment._yaml import parse, sentence
+from calibration.experiment._yaml import sentence
 from calibration.experiment.model import CouponMode, Supports
 from calibration.lab_files import DIMENSIONS, Quantity, unit
 from calibration.new._plausible import CHECKS
@@ -209,21 +208,6 @@ class Answers(Strict):
         if self.photographs is not None and not any(c.photo for t in beams for c in t.captures or ()):
             raise say("photographs", "expected none without a capture that has a photo")
         return self
-
-
-def read_answers(path: Path) -> Answers:
-    """An answers file.
-
-    Raises
-    ------
-    InputError
-        It is missing or malformed: one sentence with the file, the key or line, and what was expected.
-    """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: expected a file with answers ({error.strerror})") from None
-    return parse(content, path, Answers)
 
 
 def fits(quantity: Quantity, text: str) -> bool:

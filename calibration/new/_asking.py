@@ -119,6 +119,11 @@ class Nobody:
             self.behind.add(f"materials.{value}")
         return value, False
 
+    def lack(self, key: str, text: str, *, behind: str) -> None:
+        """Take up a key that is missing, and the beginning of the keys that hang on it."""
+        self.missing[key] = text
+        self.behind.add(behind)
+
     def confirm(self, where: str, name: str, sentence: str) -> bool:
         raise InputError(f"{self.path}: key {where}: {sentence} (if it is right, say so: accept: [{name}])")
 

@@ -10,8 +10,9 @@ from typing import Annotated, Any
 import typer
 
 from calibration._files import write_whole
-from calibration.cli import Version, command, plain_ends
+from calibration.cli import command, plain_ends
 from calibration.errors import InputError, OptionError
+from tisim.options import Version
 
 app = command()
 
@@ -121,14 +122,16 @@ def _board(path: Path, squares: str, square_mm: float, page: str) -> bytes:
 
 
 def _build(files: list[Path], out: Path, yes: Path | None) -> None:
-    from calibration.new._answers import read_answers, validate
+    from calibration.new._answers import validate
     from calibration.new._asking import Nobody, Terminal
     from calibration.new._build import build, check_target, dump
     from calibration.new._interview import interview
+    from calibration.new._read import read_answers
 
     check_target(out)
     if yes is not None:
-        made = build(read_answers(yes), yes.parent, out, Nobody(yes))
+        asker = Nobody(yes)
+        made = build(read_answers(yes, asker), yes.parent, out, asker)
     else:
         raw: dict[str, Any] = {}
         try:

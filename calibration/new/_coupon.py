@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.lab_files import Column, Quantity
 from calibration.new._answers import CouponAnswers
@@ -19,6 +20,7 @@ _STRAINS: tuple[Quantity, ...] = ("stretch", "strain", "displacement", "true-str
 _STRESSES: tuple[Quantity, ...] = ("stress", "force", "true-stress")
 _CROSSHEAD = 0.1  # mm, of a length between grips
 _STRETCH_SD = 0.002
+_LARGEST_TRUE = 10.0  # true strain, beyond any specimen and far below where exp overflows
 
 
 def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve]:
@@ -29,10 +31,10 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     InputError
         The record has no strain or no stress, is damaged, or something is left open that has no default.
     """
-    record = open_record(work, entry)
     mode = work.settle(
         entry.id, "mode", entry.mode, f"the mode of the test: {', '.join(_MODES)}", one_of(_MODES)
     )
+    record = open_record(work, entry)  # after what does not hang on it
     strain_kind, strain_column = _first(record, _STRAINS)
     stress_kind, stress_column = _first(record, _STRESSES)
     if mode != "uniaxial" and "true" in f"{strain_kind}{stress_kind}":
@@ -59,7 +61,10 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
                 else "length at rest that is stretched: between the grips, or a cylinder's height [mm]",
             )
             raw = raw / length
-        stretch = np.exp(sign * raw) if strain_kind == "true-strain" else 1.0 + sign * raw
+        if strain_kind == "true-strain":
+            stretch = np.exp(sign * np.clip(raw, -_LARGEST_TRUE, _LARGEST_TRUE))
+        else:
+            stretch = 1.0 + sign * raw
     if length is None and entry.rest_length_mm is not None:
         raise record.error(
             f"rest_length_mm: expected only where the stretch comes from a displacement, here it comes from"
@@ -77,9 +82,17 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
         )
     load = record.si(stress_column, stress_kind) - (entry.force_zero_N if stress_kind == "force" else 0.0)
     load = load * record.force_sign(load, stretch)
+    section = record.area(sheared=mode == "simple-shear") if stress_kind == "force" else 1.0
+    # of a stretch by answers that are missing, only once all of them are asked for
+    if strain_kind == "true-strain":
+        _refuse(record, strain_column, raw, np.abs(raw) > _LARGEST_TRUE, f"at most {_LARGEST_TRUE:g}", "")
+    if mode != "simple-shear":
+        _refuse(
+            record, strain_column, stretch, stretch <= 0, "a stretch above 0", ", or its sign turned round"
+        )
     force = area = None
     if stress_kind == "force":
-        stress = load / record.area(sheared=mode == "simple-shear")
+        stress = load / section
     elif stress_kind == "true-stress":
         stress = load / stretch  # at constant volume: nominal = true / stretch
         work.defaults.append(f"{entry.id}: nominal stress from true stress at constant volume")
@@ -103,6 +116,16 @@ def make_coupon(work: Work, entry: CouponAnswers) -> tuple[dict[str, Any], Curve
     else:
         work.defaults.append(f"{entry.id}.stress_sd_kPa left out (estimated from the scatter of the curve)")
     return trial, Curve(mode=mode, stretch=stretch, stress=stress, time=time, force=force, area=area)
+
+
+def _refuse(
+    record: Record, column: Column, values: Array, wrong: NDArray[np.bool_], expected: str, or_else: str
+) -> None:
+    """InputError at the first row whose value is wrong."""
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        got = f"expected {expected}, got {values[row]:.4g}"
+        raise record.line(row, f"column {column.header}: {got}; is the strain in %{or_else}?")
 
 
 def _first(record: Record, kinds: tuple[Quantity, ...]) -> tuple[Quantity, Column]:

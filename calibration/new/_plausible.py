@@ -130,8 +130,6 @@ def _strain(made: Made) -> str | None:
     if not isinstance(made, Curve):
         return None
     low, high = float(made.stretch.min()), float(made.stretch.max())
-    if made.mode != "simple-shear" and low <= 0:
-        return f"a stretch of {low:.4g} is impossible; is the strain in %, or its sign turned round?"
     if high > _LONGEST_STRETCH:
         return f"a stretch of {high:.4g} is implausible; is the strain in %, not a ratio?"
     if max(high - 1.0, 1.0 - low) < 2e-3:

@@ -22,7 +22,24 @@ def make_poke(work: Work, entry: PokeAnswers) -> tuple[dict[str, Any], Push]:
     InputError
         The record has no time, displacement or force, is damaged, or something without default is left open.
     """
-    record = open_record(work, entry)
+    where = entry.id
+    block = work.settle(
+        where,
+        "block_mm",
+        _listed(entry.block_mm),
+        "sides of the block along x, y, z [mm]",
+        numbers(3, above_zero),
+    )
+    if entry.rod is None:
+        radius = work.settle(where, "rod.radius_mm", None, "radius of the indenter [mm]", above_zero)
+        tip = work.settle(
+            where, "rod.tip", None, "tip of the indenter: flat or hemisphere", one_of(("flat", "hemisphere"))
+        )
+        rod = {"radius_mm": radius, "tip": tip}
+    else:
+        rod = entry.rod.model_dump()
+    surfaces = [_surface(work, s, where, k) for k, s in enumerate(entry.surfaces, 1)]
+    record = open_record(work, entry)  # after what does not hang on it
     time = record.time(needed=True)
     assert time is not None
     kinds: tuple[Quantity, ...] = ("displacement", "force")
@@ -42,22 +59,6 @@ def make_poke(work: Work, entry: PokeAnswers) -> tuple[dict[str, Any], Push]:
         force = force * record.force_sign(force, depth)
     name = f"pokes/{entry.id}.csv"
     work.tables[name] = csv_text({"time_s": time, "depth_mm": depth * 1e3, "force_N": force})
-    where = entry.id
-    block = work.settle(
-        where,
-        "block_mm",
-        _listed(entry.block_mm),
-        "sides of the block along x, y, z [mm]",
-        numbers(3, above_zero),
-    )
-    if entry.rod is None:
-        radius = work.settle(where, "rod.radius_mm", None, "radius of the indenter [mm]", above_zero)
-        tip = work.settle(
-            where, "rod.tip", None, "tip of the indenter: flat or hemisphere", one_of(("flat", "hemisphere"))
-        )
-        rod = {"radius_mm": radius, "tip": tip}
-    else:
-        rod = entry.rod.model_dump()
     trial: dict[str, Any] = {"block_mm": list(block), "rod": rod}
     if entry.inclusion is not None:
         trial["inclusion"] = entry.inclusion.model_dump(exclude_none=True)
@@ -99,8 +100,8 @@ def make_poke(work: Work, entry: PokeAnswers) -> tuple[dict[str, Any], Push]:
         _DEPTH_SD,
         "of a crosshead and the first touch",
     )
-    if entry.surfaces:
-        trial["surfaces"] = [_surface(work, s, where, k) for k, s in enumerate(entry.surfaces, 1)]
+    if surfaces:
+        trial["surfaces"] = surfaces
     radius_m = float(rod["radius_mm"]) * 1e-3
     return trial, Push(depth=depth, force=force, time=time, radius=radius_m, height=float(block[2]) * 1e-3)
 

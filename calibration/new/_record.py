@@ -315,8 +315,9 @@ class Record:
         return InputError(f"{self.test.file.path}:{test} {text}")
 
     def line(self, row: int, text: str) -> InputError:
-        """An error at one of its rows."""
-        return self.test.file.error(text, self.test.rows[row], sheet=self.test.sheet)
+        """An error at one of its rows, counted among those that are kept."""
+        at = row if self.kept is None else int(self.kept[row])
+        return self.test.file.error(text, self.test.rows[at], sheet=self.test.sheet)
 
 
 def open_record(work: Work, entry: CouponAnswers | PokeAnswers) -> Record:

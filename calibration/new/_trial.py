@@ -15,6 +15,7 @@ from calibration.errors import InputError
 from calibration.new._asking import SD, Asker, Question, zero_or_more
 
 Array = NDArray[np.float64]
+NO_FILE = "."  # stands in for the name of a file that the answers lack
 
 
 @dataclass(kw_only=True)
@@ -49,7 +50,7 @@ class Work:
             There is no such file.
         """
         path = self.base / name
-        if not path.is_file():
+        if not path.is_file() and not (name == NO_FILE and self.asker.lacks):
             raise InputError(f"{path}: key {where}: expected a file, there is none")
         return path
 

@@ -15,6 +15,8 @@ from calibration.parameters._coordinates import (
     Coordinate,
     Parameters,
     Parametrisation,
+    PartCoordinates,
+    ProtocolWindow,
     bulk_ratio,
     shear_modulus,
     two_moduli,
@@ -22,9 +24,7 @@ from calibration.parameters._coordinates import (
 from calibration.parameters._laws import arruda_boyce, mooney_rivlin, ogden
 from calibration.parameters._parts import (
     Option,
-    PartCoordinates,
     PartKind,
-    ProtocolWindow,
     part_alternatives,
     part_coordinates,
     part_kind,

@@ -1,21 +1,20 @@
-"""Search coordinates of a law: variables of the optimiser with bounds, a start and, where known, a prior."""
+"""Search coordinates of a law and its parts: variables with bounds, a start and, where known, a prior."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tisim import Material, laws
-
-if TYPE_CHECKING:
-    from calibration.parameters._parts import PartCoordinates
+from tisim.parts import Part
 
 Array = NDArray[np.float64]
 Parameters = dict[str, "float | tuple[float, ...]"]
+Values = dict[str, float]
 
 # Search range of the shear modulus [Pa]: gels to stiff rubbers.
 SHEAR_LOW, SHEAR_HIGH = 50.0, 5e7
@@ -75,6 +74,78 @@ class Coordinate:
     def value(self, u: float) -> float:
         """The coordinate as a value."""
         return float(np.exp(u)) if self.log else float(u)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProtocolWindow:
+    """Times and peak strains of a material's tests, which limit what they show of its parts.
+
+    Attributes
+    ----------
+    first, last : float
+        Shortest ramp and longest hold (longest test, where none has a hold) [s]: relaxation times between
+        them are seen. Both 0 where no test has a clock.
+    peaks : int
+        Different largest strains that were unloaded from.
+    """
+
+    first: float
+    last: float
+    peaks: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartCoordinates:
+    """A part of a material in search coordinates.
+
+    Attributes
+    ----------
+    spec : str
+        As it is asked for ("prony:2"); empty where it is held.
+    label : str
+        Name in tables and file names ("prony-2").
+    field : str
+        Field of `tisim.Material` ("viscosity", "softening").
+    window : ProtocolWindow
+        Times and peak strains of the tests that it was made for.
+    coordinates : tuple of Coordinate
+    assemble : callable
+        Values by coordinate name -> the part; ValueError where it refuses them.
+    describe : callable
+        Values, and the law's small-strain moduli -> sentences for `Parametrisation.remarks`.
+    take_apart : callable, optional
+        The inverse of `assemble`: a part -> values; ValueError for one of another form.
+    """
+
+    spec: str
+    label: str
+    field: str
+    window: ProtocolWindow
+    coordinates: tuple[Coordinate, ...]
+    assemble: Callable[[Values], Part]
+    describe: Callable[[Values, laws.Moduli], list[str]]
+    take_apart: Callable[[Part], Values] | None = None
+
+    def starting_at(self, part: Part) -> PartCoordinates:
+        """The same, searched from a part on; ValueError for one that these coordinates do not describe."""
+        if self.take_apart is None:
+            raise ValueError(f"{self.spec} does not begin at a {part.name}")
+        values = self.take_apart(part)
+        begun = tuple(
+            replace(c, start=min(max(values[c.name], c.low), c.high), start_per_shear=None)
+            for c in self.coordinates
+        )
+        return replace(self, coordinates=begun)
+
+    def assembled(self, values: Values) -> Part:
+        """The part at these values; ValueError where they make none."""
+        found = self.assemble(values)
+        found.check()
+        return found
+
+    def remarks(self, values: Values, moduli: laws.Moduli) -> list[str]:
+        """Notes for the reader on the part at these values."""
+        return self.describe(values, moduli)
 
 
 @dataclass(frozen=True, kw_only=True)

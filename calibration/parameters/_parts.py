@@ -1,4 +1,4 @@
-"""Search coordinates of what a material has beside its law (`tisim.parts`), and a registry of them.
+"""Registry of the parts that can be fitted beside a material's law (`tisim.parts`).
 
 A part is named in one word, with an argument after a colon where it takes one ("prony:2").
 """
@@ -6,87 +6,13 @@ A part is named in one word, with an argument after a colon where it takes one (
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
-from calibration.parameters._coordinates import Coordinate
-from tisim import laws
+from calibration.parameters._coordinates import Coordinate, PartCoordinates, ProtocolWindow, Values
 from tisim.parts import Part
 
-Values = dict[str, float]
 Option = Literal["time", "damage", "fibres"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ProtocolWindow:
-    """Times and peak strains of a material's tests, which limit what they show of its parts.
-
-    Attributes
-    ----------
-    first, last : float
-        Shortest ramp and longest hold (longest test, where none has a hold) [s]: relaxation times between
-        them are seen. Both 0 where no test has a clock.
-    peaks : int
-        Different largest strains that were unloaded from.
-    """
-
-    first: float
-    last: float
-    peaks: int
-
-
-@dataclass(frozen=True, kw_only=True)
-class PartCoordinates:
-    """A part of a material in search coordinates.
-
-    Attributes
-    ----------
-    spec : str
-        As it is asked for ("prony:2"); empty where it is held.
-    label : str
-        Name in tables and file names ("prony-2").
-    field : str
-        Field of `tisim.Material` ("viscosity", "softening").
-    window : ProtocolWindow
-        Times and peak strains of the tests that it was made for.
-    coordinates : tuple of Coordinate
-    assemble : callable
-        Values by coordinate name -> the part; ValueError where it refuses them.
-    describe : callable
-        Values, and the law's small-strain moduli -> sentences for `Parametrisation.remarks`.
-    take_apart : callable, optional
-        The inverse of `assemble`: a part -> values; ValueError for one of another form.
-    """
-
-    spec: str
-    label: str
-    field: str
-    window: ProtocolWindow
-    coordinates: tuple[Coordinate, ...]
-    assemble: Callable[[Values], Part]
-    describe: Callable[[Values, laws.Moduli], list[str]]
-    take_apart: Callable[[Part], Values] | None = None
-
-    def starting_at(self, part: Part) -> PartCoordinates:
-        """The same, searched from a part on; ValueError for one that these coordinates do not describe."""
-        if self.take_apart is None:
-            raise ValueError(f"{self.spec} does not begin at a {part.name}")
-        values = self.take_apart(part)
-        begun = tuple(
-            replace(c, start=min(max(values[c.name], c.low), c.high), start_per_shear=None)
-            for c in self.coordinates
-        )
-        return replace(self, coordinates=begun)
-
-    def assembled(self, values: Values) -> Part:
-        """The part at these values; ValueError where they make none."""
-        found = self.assemble(values)
-        found.check()
-        return found
-
-    def remarks(self, values: Values, moduli: laws.Moduli) -> list[str]:
-        """Notes for the reader on the part at these values."""
-        return self.describe(values, moduli)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from calibration.parameters._parts import Option, PartCoordinates, ProtocolWindow
+from calibration.parameters._coordinates import PartCoordinates, ProtocolWindow
+from calibration.parameters._parts import Option
 from tisim import parts
 from tisim.parts import Part
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from calibration.parameters._coordinates import Coordinate
-from calibration.parameters._parts import ProtocolWindow, Values, one_form, register_part
+from calibration.parameters._coordinates import Coordinate, ProtocolWindow, Values
+from calibration.parameters._parts import one_form, register_part
 from tisim import OgdenRoxburgh
 from tisim.parts import Part
 

@@ -12,8 +12,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from calibration.parameters._coordinates import Coordinate
-from calibration.parameters._parts import PartCoordinates, PartKind, ProtocolWindow, Values, register_part
+from calibration.parameters._coordinates import Coordinate, PartCoordinates, ProtocolWindow, Values
+from calibration.parameters._parts import PartKind, register_part
 from tisim import Prony, laws
 from tisim.parts import Part
 

@@ -21,7 +21,7 @@ from calibration.measurements._kinds import Kind, compared
 from calibration.measurements._kinds import models as models_of
 from calibration.measurements._model import MeasurementModel
 from calibration.measurements._state import State
-from calibration.measurements.outlines.simulators import OURS
+from calibration.measurements.outlines.simulators import TISIM
 from calibration.parameters import OPTIONS
 from calibration.prediction._cards import (
     CardFile,
@@ -270,7 +270,7 @@ def _by_cards(
     try:
         for name, m in models.items():
             _check_parts(kind, own, m)
-            made, left_out = models_of(kind, own, FitContext(law=m.law, simulator=OURS, workers=workers))
+            made, left_out = models_of(kind, own, FitContext(law=m.law, simulator=TISIM, workers=workers))
             parts[name] = [(model, _from_card(model, m, scatter)) for model in made]
             not_compared |= dict.fromkeys(left_out)
         for some in zip(*parts.values(), strict=True):

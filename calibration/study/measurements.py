@@ -13,7 +13,7 @@ from calibration.measurements._contribution import Contribution, FitContext, Obj
 from calibration.measurements._kinds import compared, contribution
 from calibration.measurements.objective import ModelObjective
 from calibration.measurements.outlines.setup import Setup
-from calibration.measurements.outlines.simulators import OURS, Simulator
+from calibration.measurements.outlines.simulators import TISIM, Simulator
 from calibration.parameters import Parametrisation
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def measurements(
     law: Parametrisation,
     *,
     workers: int | None = None,
-    simulator: Simulator = OURS,
+    simulator: Simulator = TISIM,
     objective: ObjectiveName = "likelihood",
     free_bulk_ratio: bool = False,
 ) -> Measurements:

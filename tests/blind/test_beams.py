@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 import yaml
 
-from benchmarks.blind.beams.cases import EFFECTS, OUTSIDE, PARAMETER, draw
+from benchmarks.blind.beams.cases import draw
+from benchmarks.blind.beams.effects import EFFECTS, OUTSIDE, PARAMETER
 from benchmarks.blind.beams.experiment import write_experiment
 from benchmarks.blind.beams.ideal_beams import LENGTHS, POINTS
 from benchmarks.blind.beams.scores import Scored

@@ -257,7 +257,7 @@ def test_disk_full_while_a_poke_is_written(
         with pytest.raises(InputError, match="No space left on device; every finished poke is kept"):
             standin_build(plan, target)
     assert Staging(target).finished() == {0, 2}
-    assert not list(building_folder(target).rglob("*.tmp"))
+    assert not list(building_folder(target).rglob("*.part"))
     assert standin_build(plan, target).simulated == 2
     assert digest(target) == digest(reference)
 

@@ -157,7 +157,7 @@ def test_an_interrupted_release_begins_anew(
         patch.setattr(_archive, "zip_faults", interrupt)
         result = run_app(factory.release.app, finished_store, "--out", target)
     assert (result.exit_code, list(tmp_path.iterdir())) == (130, [])
-    (tmp_path / ".store.zarr.zip.partial").write_bytes(released.read_bytes()[:1000])
+    (tmp_path / "store.zarr.zip.0a1b2c3d.part").write_bytes(released.read_bytes()[:1000])
     shutil.copy(released.with_name("store.zarr.zip.sha256"), tmp_path)
     assert run_app(factory.release.app, finished_store, "--out", target).exit_code == 0
     assert target.read_bytes() == released.read_bytes()

@@ -7,7 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from tisim._options import Version
+from tisim.options import Version
 
 EXAMPLES = """
 [bold]Examples[/bold]

@@ -20,17 +20,9 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from benchmarks.blind.beams.cases import (
-    DEGREE,
-    IMAGE,
-    LENGTH_SD,
-    TIMES,
-    Case,
-    beam_at,
-    photographed,
-    true_beam,
-)
+from benchmarks.blind.beams.cases import LENGTH_SD, TIMES, Case, beam_at, true_beam
 from benchmarks.blind.beams.detectability import traced
+from benchmarks.blind.beams.effects import DEGREE, IMAGE, photographed
 from benchmarks.blind.beams.experiment import as_traced, capture, entry_of, jittered
 from benchmarks.blind.beams.ideal_beams import LENGTHS
 from benchmarks.blind.beams.model import GRAVITY, WINDOW, Beam

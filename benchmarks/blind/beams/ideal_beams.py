@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from benchmarks.blind.beams.model import GRAVITY, Beam, Resolution
 from benchmarks.blind.beams.solver import axis_of, solve
+from benchmarks.whole import whole_file
 
 Array = NDArray[np.float64]
 RADIUS = 0.010
@@ -138,10 +139,9 @@ def table(path: Path, resolution: Resolution) -> Table:
             return Table(kept["edges"], tuple(kept[f"axis_{k}"] for k in range(len(LENGTHS))))
     made = make_table(resolution)
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".part.npz")
     axes = {f"axis_{k}": axis for k, axis in enumerate(made.axes)}
-    np.savez_compressed(partial, allow_pickle=False, edges=made.edges, **axes)
-    partial.replace(path)
+    with whole_file(path) as file:
+        np.savez_compressed(file, allow_pickle=False, edges=made.edges, **axes)
     return made
 
 

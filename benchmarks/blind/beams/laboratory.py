@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.blind.beams.cases import EFFECTS, OUTSIDE, Case, resized, solve_case
+from benchmarks.blind.beams.cases import Case, resized, solve_case
 from benchmarks.blind.beams.detectability import Columns, columns_at
+from benchmarks.blind.beams.effects import EFFECTS, OUTSIDE
 from benchmarks.blind.beams.experiment import rewrite_tables, write_experiment
 from benchmarks.blind.beams.ideal_beams import Table, table
 from benchmarks.blind.beams.make import make_case

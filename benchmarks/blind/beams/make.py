@@ -16,8 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.blind.beams.cases import EFFECTS, OUTSIDE, Case, draw, resized, solve_case, stiff_enough
+from benchmarks.blind.beams.cases import Case, draw, resized, solve_case, stiff_enough
 from benchmarks.blind.beams.detectability import FLOOR, sigmas
+from benchmarks.blind.beams.effects import EFFECTS, OUTSIDE
 from benchmarks.blind.beams.ideal_beams import Table, table
 from benchmarks.blind.beams.model import Resolution
 from benchmarks.blind.beams.solver import NoEquilibriumError

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.blind.beams.cases import EFFECTS, OUTSIDE, PARAMETER, trial_names
+from benchmarks.blind.beams.cases import trial_names
+from benchmarks.blind.beams.effects import EFFECTS, OUTSIDE, PARAMETER
 
 Truth = dict[str, Any]
 Names = tuple[str, ...]

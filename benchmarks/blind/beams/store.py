@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from benchmarks.blind.beams.cases import TIMES, Case, Hidden, Trial, trial_names
 from benchmarks.blind.beams.detectability import FLOOR
+from benchmarks.whole import whole_file, write_whole
 
 Array = NDArray[np.float64]
 CASES = Path(__file__).parent / "data" / "cases"  # the 200 stored ones
@@ -36,9 +37,8 @@ def save_case(folder: Path, case: Case, edges: Array, sizes: dict[str, float]) -
     # photographs of beams that do not change over time are stored once
     still = bool((edges == edges[:, :1]).all())
     kept[key] = (edges[:, :1] if still else edges).astype(np.float32)
-    partial = folder / "edges.part.npz"
-    np.savez(partial, allow_pickle=False, **kept)
-    partial.replace(folder / "edges.npz")
+    with whole_file(folder / "edges.npz") as file:
+        np.savez(file, allow_pickle=False, **kept)
     truth = load_truth(folder)
     truth["seed"] = case.seed
     truth["cases"][key] = {
@@ -54,8 +54,7 @@ def save_case(folder: Path, case: Case, edges: Array, sizes: dict[str, float]) -
     }
     lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in sorted(truth["cases"].items()))
     text = f'{{"seed": {truth["seed"]}, "cases": {{\n{lines}\n}}}}\n'
-    (folder / "truth.json.part").write_text(text, encoding="utf-8")
-    (folder / "truth.json.part").replace(folder / "truth.json")
+    write_whole(folder / "truth.json", text)
 
 
 def load_case(folder: Path, index: int) -> tuple[Case, Array]:

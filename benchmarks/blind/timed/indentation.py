@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from benchmarks.blind.timed.course import Course
 from benchmarks.blind.timed.material import Prony
+from benchmarks.whole import write_whole
 
 Array = NDArray[np.float64]
 STORE = Path(__file__).with_name("indentation.json")
@@ -97,9 +98,7 @@ def load() -> dict[str, Any]:
 def save(found: dict[str, Any]) -> None:
     """Write the store atomically, one entry per line."""
     lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in found.items())
-    part = STORE.with_suffix(".part")
-    part.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
-    part.replace(STORE)
+    write_whole(STORE, "{\n" + lines + "\n}\n")
 
 
 def stored_force(name: str, course: Course, times: Array) -> Array:

@@ -45,7 +45,7 @@ from calibration.measurements.outlines._solutions import SolutionCache
 from calibration.measurements.outlines.experiments import EXPERIMENTS, Photographs
 from calibration.measurements.outlines.fidelity import Fidelity
 from calibration.measurements.outlines.setup import Setup
-from calibration.measurements.outlines.simulators import OURS, Simulator
+from calibration.measurements.outlines.simulators import TISIM, Simulator
 from tisim import Beam, Result
 
 Array = NDArray[np.float64]
@@ -99,7 +99,7 @@ class OutlineModel(MeasurementModel):
         experiment: Experiment,
         *,
         effects: Mapping[str, OutlineEffect] | None = None,
-        simulator: Simulator = OURS,
+        simulator: Simulator = TISIM,
         workers: int | None = None,
         pose: Callable[[Beam, BeamTrial], Beam] | None = None,
         baseline: Baseline | None = None,

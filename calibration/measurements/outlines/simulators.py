@@ -122,8 +122,8 @@ _SHORTEST, _LONGEST = 4 * _WINDOW, 4.0  # shortest and longest duration of a run
 _MARGIN = 1.2
 _DYNAMIC = Solver(method="implicit", tolerance=1e-4, time_step=5e-3, mass_damping=0.1, stiffness_damping=0.01)
 
-OURS = Simulator(
-    name="ours",
+TISIM = Simulator(
+    name="tisim",
     sentence="mixed quadratic tetrahedra in equilibrium",
     fidelity=COARSE,
     reference=CORRECTING,
@@ -132,7 +132,7 @@ OURS = Simulator(
 SIMULATORS = {
     s.name: s
     for s in (
-        OURS,
+        TISIM,
         Simulator(
             name="linear-tetrahedra",
             sentence="plain 4-node tetrahedra in equilibrium, as the paper's elements",

@@ -20,7 +20,7 @@ from calibration.experiment import read
 from calibration.experiment.model import Experiment
 from calibration.measurements.outlines import COARSE
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.simulators import OURS, Simulator
+from calibration.measurements.outlines.simulators import TISIM, Simulator
 from tisim.mesh import outline
 
 Array = NDArray[np.float64]
@@ -113,7 +113,7 @@ def _contour_error(correlations: Array, sd: float, rng: np.random.Generator) -> 
 def beam_model(
     made: Experiment,
     *,
-    simulator: Simulator = OURS,
+    simulator: Simulator = TISIM,
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> OutlineModel:

@@ -24,9 +24,9 @@ from calibration.measurements._state import State
 from calibration.measurements.outlines._photographs import photographs_of
 from calibration.measurements.outlines.experiments import EXPERIMENTS, Gauge
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.simulators import OURS
+from calibration.measurements.outlines.simulators import TISIM
 
-BARE = replace(OURS, reference=None)  # made the data: there is no mesh error to correct
+BARE = replace(TISIM, reference=None)  # made the data: there is no mesh error to correct
 FIRM = tisim.material_from_moduli("neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR)
 STATE = State(u=np.array([np.log(SHEAR)]))
 TWO = State(u=np.log([SHEAR, 0.6 * SHEAR]))

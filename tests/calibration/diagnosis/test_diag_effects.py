@@ -15,7 +15,7 @@ from calibration.measurements._state import Linearisation, State
 from calibration.measurements.outlines import COARSE
 from calibration.measurements.outlines._effect import Situation
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.simulators import OURS
+from calibration.measurements.outlines.simulators import TISIM
 
 # the names of the catalogue
 CATALOGUE = [
@@ -53,7 +53,7 @@ RIG = {
     "grip-squeeze",
     "clamp-gap",
 }
-BARE = replace(OURS, reference=None)  # made the data: there is no mesh error to correct
+BARE = replace(TISIM, reference=None)  # made the data: there is no mesh error to correct
 STATE = State(u=np.array([np.log(SHEAR)]))
 
 

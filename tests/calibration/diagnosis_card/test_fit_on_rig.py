@@ -19,7 +19,7 @@ from calibration.diagnosis.rig import read_rig
 from calibration.experiment import read
 from calibration.fit import app
 from calibration.inference import CmaOptions
-from calibration.measurements.outlines.simulators import OURS
+from calibration.measurements.outlines.simulators import TISIM
 from calibration.parameters import parametrisation
 from calibration.study import FitOptions, calibrate, measurements
 from calibration.study.measurements import OnSetup
@@ -30,7 +30,7 @@ TRUTH = tisim.material_from_moduli(
     "neo-hookean", shear_modulus=SHEAR, bulk_modulus=300 * SHEAR, density=1000.0
 )
 LAW = parametrisation("neo-hookean")
-BARE = replace(OURS, reference=None)
+BARE = replace(TISIM, reference=None)
 TILT = rig_effect("clamp-tilt", "angle_deg", -2.0, 0.1)
 DEPTH = rig_effect("grip-length", "depth_mm", 1.5, 0.1)
 

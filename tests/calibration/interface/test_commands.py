@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import importlib
+import inspect
 import os
 import re
 import subprocess
@@ -16,8 +17,11 @@ from _folders import coupon_entry, poke_entry, write_experiment
 from typer import Typer
 from typer.testing import CliRunner
 
+import calibration
 from calibration.diagnose import app as diagnose
-from calibration.diagnosis import kinds
+from calibration.diagnose import main
+from calibration.diagnosis import SIMULATORS, kinds
+from calibration.diagnosis.model import DEFAULT_SIMULATOR
 from calibration.fit import app as fit
 from calibration.predict import app as predict
 from calibration.study._store import FitStore, locked
@@ -46,6 +50,12 @@ def test_the_package_lists_its_verbs() -> None:
     assert done.returncode == 0, done.stderr
     for verb in VERBS:
         assert f"python -m calibration.{verb}" in done.stdout
+
+
+def test_the_simulator_is_called_by_its_name() -> None:
+    """The default of the function and of the command, and the name that an unknown one is answered with."""
+    options = (inspect.signature(f).parameters["simulator"].default for f in (calibration.diagnose, main))
+    assert {DEFAULT_SIMULATOR, next(iter(SIMULATORS)), *options} == {"tisim"}
 
 
 @pytest.mark.parametrize("verb", VERBS)

@@ -174,10 +174,11 @@ def without(own: dict[str, Any], *keys: str) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("trial", "said"),
     [
-        (BAR, "answers.yaml: key trials[bar].captures: missing, expected captures or markers"),
+        (BAR, "answers.yaml: missing key bar.captures: expected captures or markers"),
         (
             {**BAR, "captures": [CAPTURE], "marker_sd_mm": 0.1},
-            "answers.yaml: key trials[bar].markers: missing, expected it beside marker_sd_mm",
+            "answers.yaml: missing keys bar.markers (expected the file with the displacements of the markers,"
+            " beside marker_sd_mm), bar.marker_positions_mm (expected position",
         ),
         (
             without({**BAR, **MARKED}, "marker_positions_mm"),
@@ -198,7 +199,7 @@ def without(own: dict[str, Any], *keys: str) -> dict[str, Any]:
         ),
         (
             {**BAR, "captures": [{"time_s": 1.0}]},
-            "answers.yaml: key trials[bar].captures[#1].outline: missing, expected an outline or a photo",
+            "answers.yaml: missing key bar.captures[#1].outline: expected an outline or a photo",
         ),
         (
             {**BAR, **MARKED, "captures": [CAPTURE], "tip_force_N": [0, 0, -1.0], "tip_force_height_mm": 1.0},
@@ -224,7 +225,10 @@ def test_beams_that_cannot_be_are_refused(trial: dict[str, Any], said: str, file
             {"points": "push.csv", "time_s": 1.0},
             "missing key push.surfaces[#1].point_sd_mm: expected",
         ),
-        ({"time_s": 1.0}, "missing key trials[push].surfaces[#1].points: expected it here"),
+        (
+            {"time_s": 1.0},
+            "missing keys push.surfaces[#1].points (expected the file with the scan), push.surfaces",
+        ),
     ],
 )
 def test_scans_that_say_too_little_are_refused(scan: dict[str, Any], said: str, files: Path) -> None:

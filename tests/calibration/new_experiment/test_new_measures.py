@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from calibration.errors import InputError
 from calibration.experiment import CouponTrial, read
-from calibration.new._answers import read_answers
 from calibration.new._asking import Nobody
 from calibration.new._build import build
+from calibration.new._read import read_answers
 
 Array = NDArray[np.float64]
 TIME = 0.5 * np.arange(16)
@@ -30,7 +30,8 @@ def trial(folder: Path, text: str | bytes, name: str = "f.csv", **answers: Any) 
     (folder / name).write_bytes(text.encode() if isinstance(text, str) else text)
     own = {"id": "c", "kind": "coupon", "material": "M", "file": name, "mode": "uniaxial", **answers}
     (folder / "a.yaml").write_text(yaml.safe_dump({"name": "x", "trials": [own]}), encoding="utf-8")
-    build(read_answers(folder / "a.yaml"), folder, folder / "out", Nobody(folder / "a.yaml"))
+    asker = Nobody(folder / "a.yaml")
+    build(read_answers(asker.path, asker), folder, folder / "out", asker)
     (found,) = read(folder / "out").trials
     assert isinstance(found, CouponTrial)
     return found

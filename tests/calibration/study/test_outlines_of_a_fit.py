@@ -20,7 +20,7 @@ from calibration.measurements.outlines import COARSE
 from calibration.measurements.outlines._admitted import admitted
 from calibration.measurements.outlines._solutions import SolutionCache
 from calibration.measurements.outlines.model import OutlineModel
-from calibration.measurements.outlines.simulators import OURS
+from calibration.measurements.outlines.simulators import TISIM
 from calibration.parameters import parametrisation
 from calibration.study.measurements import measurements
 
@@ -30,7 +30,7 @@ TRUTH = tisim.material_from_moduli(
 )
 LAW = parametrisation("neo-hookean")
 U = np.log([SHEAR, 300.0])
-BARE = replace(OURS, reference=None)
+BARE = replace(TISIM, reference=None)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Options that the package's commands share."""
+"""Options that the commands share, those of factory and calibration too."""
 
 from __future__ import annotations
 
