@@ -21,6 +21,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from learn.quantities import COVARIATES
+
 Floats = NDArray[np.float64]
 RING_EDGES_MM = (0.0, 5.0, 10.0, 20.0, 40.0, np.inf)  # distance of undeformed points from first contact
 BAD_MM = 1.0
@@ -40,8 +42,8 @@ class Predictions:
     softness : name of the softness level, shape (f,).
     shape : name of the inclusion's shape, shape (f,); "" if it is not known.
     cover : cover over the inclusion where the rod's axis meets the surface [mm], shape (f,); 0 if not known.
-    size_gap : size of the inclusion (cube root of its volume), and distance from the indenter's tip to what
-        is rigid (`learn.quantities.gap_mm`) [mm], shape (f, 2); 0 if they are not known.
+    covariates : what the errors depend on besides each point (`learn.quantities.covariates`), shape
+        (f, len(COVARIATES)); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
     clock : time since contact and the rod's speeds of each frame, as in `learn.models.Pokes`, shape (f, 3);
@@ -58,7 +60,7 @@ class Predictions:
     softness: NDArray[np.str_]
     shape: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype=np.str_))
     cover: Floats = field(default_factory=lambda: np.zeros(0))
-    size_gap: Floats = field(default_factory=lambda: np.zeros(0))
+    covariates: Floats = field(default_factory=lambda: np.zeros(0))
     spread: Floats = field(default_factory=lambda: np.zeros(0))
     force_spread: Floats = field(default_factory=lambda: np.zeros(0))
     clock: Floats = field(default_factory=lambda: np.zeros(0))
@@ -70,8 +72,8 @@ class Predictions:
             object.__setattr__(self, "shape", np.full(self.depth.shape, ""))
         if not self.cover.size:
             object.__setattr__(self, "cover", np.zeros(self.depth.shape))
-        if not self.size_gap.size:
-            object.__setattr__(self, "size_gap", np.zeros((*self.depth.shape, 2)))
+        if not self.covariates.size:
+            object.__setattr__(self, "covariates", np.zeros((*self.depth.shape, len(COVARIATES))))
         if not self.force_spread.size:
             object.__setattr__(self, "force_spread", np.zeros(self.depth.shape))
         if not self.clock.size:

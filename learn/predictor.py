@@ -29,7 +29,7 @@ from learn.models import Response
 from learn.models.at_points import respond_at
 from learn.points_file import AskedPoints, points_on_top
 from learn.prediction import AtPoints, PokePrediction, html_table
-from learn.quantities import gap_mm, poke_values
+from learn.quantities import covariates, poke_values
 from learn.real_time import RealTime
 from learn.scene_file import PokeInput, PokeScene, kind_of, load_poke, scene_and_poke
 from learn.training import Run, check_dataset, known_domain, load_run, open_tables
@@ -125,7 +125,7 @@ class Predictor:
             clock=pokes.clock[0].numpy(),
         )
         distance = self.domain.distance(values, poke.law) if self.domain else 0.0
-        near = np.array([interior.size, gap_mm(setup, interior, start + depth * direction)])
+        near = covariates(setup, interior, start=start, direction=direction, depth=depth)
 
         def radius(points: Floats, response: Response) -> Floats | None:
             if self.intervals is None:
@@ -135,7 +135,7 @@ class Predictor:
                 away=np.linalg.norm(points - start, axis=1),
                 depth=depth,
                 spread=0.0 if response.spread is None else response.spread[0].double().numpy(),
-                size_gap=near,
+                covariates=near,
                 distance=distance,
             )
 
@@ -144,7 +144,7 @@ class Predictor:
         force, interval = float(response.force[0]), None
         if self.intervals is not None and force > 0.0:
             spread = 0.0 if response.force_spread is None else float(response.force_spread[0])
-            factor = math.exp(self.intervals.force_log(spread, size_gap=near, distance=distance))
+            factor = math.exp(self.intervals.force_log(spread, covariates=near, distance=distance))
             interval = force / factor, force * factor
         at_points = None
         if asked is not None:

@@ -15,6 +15,7 @@ from learn.data.store import Store
 Floats = NDArray[np.float64]
 NEAR = 16e-3  # m; largest gap to what is rigid that errors depend on (studies/learning/two-fifths.md)
 KINDS = ("cube", "cylinder", "sphere", "none")
+COVARIATES = ("inclusion_size_mm", "gap_mm", "angle_deg")
 
 
 class Quantity(NamedTuple):
@@ -84,6 +85,16 @@ def gap_mm(setup: Setup, interior: Interior, tip: Floats) -> float:
     below = np.maximum(tip[2] - (z - interior.soft), 0.0)
     square = (x - tip[0]) ** 2 + (y - tip[1]) ** 2 + below * below
     return 1e3 * min(NEAR, math.sqrt(float(square.min())))
+
+
+def covariates(setup: Setup, interior: Interior, *, start: Floats, direction: Floats, depth: float) -> Floats:
+    """What the errors of a prediction depend on besides the point: values of `COVARIATES`.
+
+    The size of the inclusion (cube root of its volume) [mm], the gap between the indenter's tip and what is
+    rigid [mm], and the angle between the push and the surface's normal [degrees].
+    """
+    gap = gap_mm(setup, interior, start + depth * direction)
+    return np.array([interior.size, gap, math.degrees(math.acos(min(1.0, -float(direction[2]))))])
 
 
 def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:

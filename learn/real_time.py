@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
-from learn.quantities import cover_at, gap_mm, poke_values
+from learn.quantities import covariates, cover_at, poke_values
 from learn.scene_file import kind_of, load_poke, scene_and_poke
 
 if TYPE_CHECKING:
@@ -174,13 +174,12 @@ class RealTime:
             distance = 0.0  # nothing moves, whatever was trained
         interval, radius_mm = None, None
         if self._intervals is not None and depth > 0.0:
-            gap = gap_mm(self._setup, self._interior, start + depth * push)
-            near = np.array([self._interior.size, gap])
+            near = covariates(self._setup, self._interior, start=start, direction=push, depth=depth)
             known = 0.0 if math.isnan(distance) else distance
-            factor = math.exp(self._intervals.force_log(size_gap=near, distance=known))
+            factor = math.exp(self._intervals.force_log(covariates=near, distance=known))
             interval = (force / factor, force * factor)
             radius_mm = partial(
-                self._intervals.radius_at_mm, away=away, depth=depth, size_gap=near, distance=known
+                self._intervals.radius_at_mm, away=away, depth=depth, covariates=near, distance=known
             )
         return Answer(
             displacement=u,

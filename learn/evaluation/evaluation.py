@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from learn.baselines import BASELINES
 from learn.data import MemoryDataset, Split, Store
 from learn.data.clouds import SurfaceField, scattered
+from learn.data.loaders import without_fields
 from learn.errors import InputError
 from learn.evaluation.ensembles import ensembles, names_of
 from learn.evaluation.intervals import (
@@ -182,8 +183,11 @@ def evaluate(
         for bands, rows in ((found.depths, by_depth(predictions)), (found.covers, by_cover(predictions))):
             for band, row in rows.items():
                 bands.setdefault(f"{name}, {band}", []).append(row)
-        predicted.append(Predicted(run, name, predictions, _distance(run, store, predictions)))
-        _look_closer(found, predicted[-1], scenes, split, clouds=clouds and not found.clouds)
+        validation = _validation(run, store, scenes, split)
+        distance = _distance(run, store, predictions)
+        calibrating = None if validation is None or _fault(validation) else validation
+        predicted.append(Predicted(run, name, predictions, distance, calibrating))
+        _look_closer(found, predicted[-1], scenes, split, validation, clouds=clouds and not found.clouds)
         run.model.cpu()
         key = _part(run.recipe)
         if not baselines or key in fitted or not len(split.train):
@@ -260,19 +264,27 @@ def _covered(intervals: Intervals, one: Predicted) -> Covered:
     )
 
 
-def _look_closer(found: Evaluation, one: Predicted, scenes: Scenes, split: Split, *, clouds: bool) -> None:
+def _look_closer(
+    found: Evaluation,
+    one: Predicted,
+    scenes: Scenes,
+    split: Split,
+    validation: Predictions | None,
+    *,
+    clouds: bool,
+) -> None:
     """Add symmetry, intervals, depth and clouds of one run; `scenes` are on the model's device."""
     run, title, predictions = one.run, one.name, one.predictions
     store, model = found.store, run.model
     name = f"{title}, fold {run.recipe.fold}"
     name += f", seed {run.recipe.seed}" if name in found.symmetry else ""
     own = store.uuid == run.uuid
-    validation = MemoryDataset(store, split.validation if own else split.test)
-    few = pokes_of(validation.__getitems__(np.linspace(0, len(validation) - 1, 8).astype(int)))
+    rows = split.validation if own else split.test
+    few = pokes_of(without_fields(store, rows[np.linspace(0, len(rows) - 1, 8).astype(int)]))
     part = scenes.only(few.geometry.numpy())
     found.symmetry[name] = symmetry_error(model, part, few)
     found.symmetry_vertical[name] = symmetry_error(model, part, few, about_normal=True)
-    intervals = _own_intervals(found, run, name, predict_part(model, scenes, validation) if own else None)
+    intervals = _own_intervals(found, run, name, validation)
     if intervals is not None:
         found.intervals.append((run, intervals))
         found.covered[name] = _covered(intervals, one)
@@ -290,6 +302,19 @@ def _look_closer(found: Evaluation, one: Predicted, scenes: Scenes, split: Split
         _clouds(found, run, split)
 
 
+def _validation(run: Run, store: Store, scenes: Scenes, split: Split) -> Predictions | None:
+    """Predictions of the validation part that calibrate; None for a run of another dataset."""
+    if store.uuid != run.uuid:
+        return None
+    found = predict_part(run.model, scenes, MemoryDataset(store, split.validation))
+    return inside_alone(found, _distance(run, store, found))
+
+
+def _fault(validation: Predictions) -> str | None:
+    """Sentence stating why these predictions cannot calibrate; None if they can."""
+    return too_few(validation.pokes) if validation.pokes < LEAST_POKES else force_fault(validation)
+
+
 def _own_intervals(
     found: Evaluation, run: Run, name: str, validation: Predictions | None
 ) -> Intervals | None:
@@ -299,11 +324,11 @@ def _own_intervals(
         if kept is None:
             found.no_intervals[name] = f"{run.folder} has no intervals of its own dataset yet"
         return kept
-    fault = too_few(validation.pokes) if validation.pokes < LEAST_POKES else force_fault(validation)
+    fault = _fault(validation)
     if fault is not None:
         found.no_intervals[name] = fault
         return None
-    return fit_intervals(inside_alone(validation, _distance(run, found.store, validation)))
+    return fit_intervals(validation)
 
 
 def _clouds(found: Evaluation, run: Run, split: Split) -> None:

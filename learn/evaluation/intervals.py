@@ -12,15 +12,16 @@ CDFs). Fewer than 9 pokes cannot guarantee 90 %: the largest score is then used,
 guaranteed coverage. New shapes are not exchangeable with trained ones, so that the coverage is measured,
 never presumed.
 
-Errors are larger over large inclusions, and where the indenter comes near what is rigid. The fitted errors
-therefore have a factor e^(b V^(1/3) + c g): V is the inclusion's volume, g the distance from the indenter's
-tip to what is rigid (`learn.quantities.gap_mm`). With respect to new shapes each shape is one draw: b and c
-are fitted to five shapes or more.
+Errors are larger over large inclusions, where the indenter comes near what is rigid, and the more it is
+inclined. The fitted errors therefore have a factor e^(b V^(1/3) + c g + d a): V is the inclusion's volume, g
+the distance from the indenter's tip to what is rigid, a the angle (`learn.quantities.covariates`). With
+respect to new shapes each shape is one draw: b, c and d are fitted to five shapes or more.
 
 A run is validated on two shapes, too few to predict the error on a third. The test parts of the other folds
 are each predicted by a model that was not trained on their shapes, so that they are further draws of the
 error on a new shape (cross-conformal prediction: Vovk, Ann. Math. Artif. Intell. 74, 2015; Barber et al.,
-Ann. Statist. 49, 2021). The run's own test part is not used for its intervals (`across_folds`).
+Ann. Statist. 49, 2021), as are their validation parts, but for pokes of the run's own test part, which is
+not used for its intervals (`across_folds`).
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from numpy.typing import NDArray
 
 from learn.errors import InputError
 from learn.metrics import RING_EDGES_MM, Predictions, join_predictions
+from learn.quantities import COVARIATES
 from learn.training import Run
 
 Floats = NDArray[np.float64]
@@ -43,8 +45,8 @@ LEVEL = 0.9
 LEAST_POKES = 2
 PARTS = 5  # cross-validation folds of the pokes; the error scale of each is fitted to the others
 LEAST_FOLDS = 3
-N_FEATURES = 9  # of `_Scale.fit`, without those of the inclusion
-LEAST_SHAPES = 5  # for a fit of how errors depend on the inclusion and the gap to it
+N_FEATURES = 9  # of `_Scale.fit`, without the covariates
+LEAST_SHAPES = 5  # for a fit of how errors depend on the covariates
 # Outside the trained ranges: LENGTH, in widths of these, is the length scale of the widening; far outside, a
 # force is known to a factor of e^FORCE_UNKNOWN = 4, which holds nine tenths of the forces on thin covers, the
 # worst case of studies/learning/outside.
@@ -63,8 +65,8 @@ class Intervals:
     scale : coefficients of ln(fitted error / mm).
     factors : factors on the scale, by ring of distance from first contact (`learn.metrics.RING_EDGES_MM`).
     force_scale, force : fitted error of ln(force), and its factor.
-    size_gap, force_size_gap : change of the logarithms of both fitted errors per mm of the inclusion's size
-        (`learn.quantities.Interior.size`) and of the gap to what is rigid; 0 if there are few shapes.
+    growth, force_growth : change of the logarithms of both fitted errors per unit of each of
+        `learn.quantities.COVARIATES`; 0 if there are few shapes.
     """
 
     level: float
@@ -74,8 +76,8 @@ class Intervals:
     factors: list[float]
     force_scale: float
     force: float
-    size_gap: tuple[float, float] = (0.0, 0.0)
-    force_size_gap: tuple[float, float] = (0.0, 0.0)
+    growth: tuple[float, ...] = (0.0,) * len(COVARIATES)
+    force_growth: tuple[float, ...] = (0.0,) * len(COVARIATES)
 
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
@@ -88,7 +90,7 @@ class Intervals:
             away=predictions.away,
             depth=predictions.depth[:, None],
             spread=predictions.spread,
-            size_gap=predictions.size_gap[:, None],
+            covariates=predictions.covariates[:, None],
             distance=np.asarray(distance)[..., None],
         )
 
@@ -99,13 +101,13 @@ class Intervals:
         away: Floats,
         depth: float | Floats,
         spread: float | Floats = 0.0,
-        size_gap: Floats | None = None,
+        covariates: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """Radius [mm] from the magnitude of the predicted displacement [m]; others as in `Predictions`."""
         fitted = _scale_mm(size, away, depth, self.scale)
-        if size_gap is not None:
-            fitted = fitted * np.exp(size_gap @ np.array(self.size_gap))
+        if covariates is not None:
+            fitted = fitted * np.exp(covariates @ np.array(self.growth))
         radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
         if (np.asarray(distance) > 0.0).any():
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
@@ -115,14 +117,14 @@ class Intervals:
         self,
         spread: float | Floats = 0.0,
         *,
-        size_gap: Floats | None = None,
+        covariates: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
         """Half width x of the force's interval: from predicted force times e^-x to predicted force times e^x.
 
         `spread` of an ensemble is as `Predictions.force_spread`; the others are as in `radius_at_mm`.
         """
-        grown = 0.0 if size_gap is None else size_gap @ np.array(self.force_size_gap)
+        grown = 0.0 if covariates is None else covariates @ np.array(self.force_growth)
         fitted = self.force_scale * np.exp(grown)
         inside = self.force * np.hypot(fitted, spread)
         return np.asarray(np.hypot(inside, np.sqrt(_unknown(distance)) * FORCE_UNKNOWN))
@@ -205,7 +207,7 @@ def coverage(intervals: Intervals, predictions: Predictions, *, distance: float 
     inside = predictions.distance_mm <= intervals.radius_mm(predictions, distance=distance)
     ring = _ring(predictions.away)
     known = _force_error(predictions) <= intervals.force_log(
-        predictions.force_spread, size_gap=predictions.size_gap, distance=distance
+        predictions.force_spread, covariates=predictions.covariates, distance=distance
     )
     each = [inside[predictions.poke == p].mean() for p in np.unique(predictions.poke)]
     shapes = len(np.unique(predictions.shape)) >= LEAST_SHAPES
@@ -302,8 +304,8 @@ class _Scale(NamedTuple):
 
     scale: list[float]
     force_scale: float
-    size_gap: tuple[float, float]
-    force_size_gap: tuple[float, float]
+    growth: tuple[float, ...]
+    force_growth: tuple[float, ...]
 
     @classmethod
     def fit(cls, predictions: Predictions, many: bool) -> _Scale:
@@ -313,8 +315,8 @@ class _Scale(NamedTuple):
         """
         x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
         t = np.broadcast_to(t, x.shape)
-        within = predictions.size_gap * many
-        grown = np.moveaxis(np.broadcast_to(within[:, None], (*x.shape, 2)), 2, 0)
+        within = predictions.covariates * many
+        grown = np.moveaxis(np.broadcast_to(within[:, None], (*x.shape, len(COVARIATES))), 2, 0)
         parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, *grown]
         found = _least_squares(parts, np.maximum(predictions.distance_mm, _LEAST_MM))
         error = _force_error(predictions)
@@ -324,15 +326,15 @@ class _Scale(NamedTuple):
         return cls(
             scale=found[:N_FEATURES].tolist(),
             force_scale=float(np.sqrt((rest**2).mean())),
-            size_gap=(float(found[-2]), float(found[-1])),
-            force_size_gap=(float(slope[0]), float(slope[1])),
+            growth=tuple(found[N_FEATURES:].tolist()),
+            force_growth=tuple(slope.tolist()),
         )
 
     def scores(self, predictions: Predictions) -> tuple[Floats, Floats]:
         """Errors divided by their scale: of points (f, n), and of forces (f,)."""
         fitted = _scale_mm(_size(predictions), predictions.away, predictions.depth[:, None], self.scale)
-        fitted = fitted * np.exp(predictions.size_gap @ np.array(self.size_gap))[:, None]
-        force = self.force_scale * np.exp(predictions.size_gap @ np.array(self.force_size_gap))
+        fitted = fitted * np.exp(predictions.covariates @ np.array(self.growth))[:, None]
+        force = self.force_scale * np.exp(predictions.covariates @ np.array(self.force_growth))
         return (
             predictions.distance_mm / _with_spread(fitted, predictions.spread),
             _force_error(predictions) / np.hypot(force, predictions.force_spread),
@@ -362,12 +364,16 @@ def inside_alone(predictions: Predictions, distance: Floats) -> Predictions:
 
 
 class Predicted(NamedTuple):
-    """A run, its name in tables, predictions of its test part, and their distance from its trained ranges."""
+    """A run, its name in tables, predictions of its test part, and their distance from its trained ranges.
+
+    `validation` has those of its validation part that calibrate (`inside_alone`); None if there are none.
+    """
 
     run: Run
     name: str
     predictions: Predictions
     distance: Floats
+    validation: Predictions | None = None
 
 
 def force_fault(predictions: Predictions) -> str | None:
@@ -382,7 +388,9 @@ def force_fault(predictions: Predictions) -> str | None:
 def across_folds(
     predicted: Sequence[Predicted], *, copies: NDArray[np.bool_] | None = None
 ) -> list[tuple[Predicted, Intervals]]:
-    """Intervals of each run from the test parts of the other runs, two or more, that differ only in fold.
+    """Intervals of each run from the unseen shapes of the other runs, two or more, that differ only in fold.
+
+    Their test parts calibrate, and their validation parts, of which a training takes no more than the epoch.
 
     Pokes of the run's own test part do not calibrate (parts of few groups overlap), nor do `copies`, pokes of
     the dataset (p,) that repeat the solve of another (`learn.data.Store.copies`): they are no further draws.
@@ -405,9 +413,14 @@ def across_folds(
 
 
 def _calibrating(other: Predicted, one: Predicted, copies: NDArray[np.bool_] | None) -> Predictions:
-    """Frames of another run's test part that calibrate the intervals of `one`."""
-    poke = other.predictions.poke
-    keep = ~np.isin(poke, one.predictions.poke)
-    if copies is not None:
-        keep &= ~copies[poke]
-    return inside_alone(other.predictions.where(keep), other.distance[keep])
+    """Frames of another run's test and validation parts that calibrate the intervals of `one`."""
+
+    def kept(predictions: Predictions) -> NDArray[np.bool_]:
+        keep = ~np.isin(predictions.poke, one.predictions.poke)
+        return keep if copies is None else keep & ~copies[predictions.poke]
+
+    keep = kept(other.predictions)
+    test = inside_alone(other.predictions.where(keep), other.distance[keep])
+    if other.validation is None:
+        return test
+    return join_predictions([test, other.validation.where(kept(other.validation))])

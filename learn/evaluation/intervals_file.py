@@ -15,6 +15,7 @@ from learn._yaml import Finite, first_fault
 from learn.errors import InputError
 from learn.evaluation.intervals import N_FEATURES, Intervals
 from learn.metrics import RING_EDGES_MM
+from learn.quantities import COVARIATES
 from learn.training import Run
 from learn.training.run_folder import write_whole
 
@@ -92,6 +93,7 @@ def _read(path: Path, run: Run) -> Intervals:
 
 
 _Positive = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+_Growth = Annotated[tuple[Finite, ...], Field(min_length=len(COVARIATES), max_length=len(COVARIATES))]
 
 
 class _File(BaseModel):
@@ -107,16 +109,23 @@ class _File(BaseModel):
     ]
     force_scale: _Positive
     force: _Positive
-    size_gap: tuple[Finite, Finite]
-    force_size_gap: tuple[Finite, Finite]
+    growth: _Growth
+    force_growth: _Growth
 
     @model_validator(mode="before")
     @classmethod
-    def _without_gap(cls, values: Any) -> Any:
-        """Refuse files of before 2026-11-28: too narrow where the indenter comes near what is rigid."""
-        if isinstance(values, dict) and "size_gap" not in values and "scale" in values:
+    def _of_before(cls, values: Any) -> Any:
+        """Refuse files without the gap: too narrow where the indenter comes near what is rigid.
+
+        Files of 2026-11-28 have `size_gap` and `force_size_gap`: their errors do not depend on the angle.
+        """
+        if not isinstance(values, dict) or "scale" not in values or "growth" in values:
+            return values
+        if "size_gap" not in values:
             raise ValueError("intervals of before 2026-11-28, which do not know the gap to what is rigid")
-        return values
+        names = {"size_gap": "growth", "force_size_gap": "force_growth"}
+        new = {name: [*values[old], 0.0] for old, name in names.items() if isinstance(values.get(old), list)}
+        return {key: value for key, value in values.items() if key not in names} | new
 
 
 def _paths(run: Run) -> list[Path]:

@@ -16,7 +16,7 @@ from learn.data.clouds import SurfaceField
 from learn.metrics import Predictions, join_predictions
 from learn.models import Pokes, Response, Scene, Scenes, pokes_of
 from learn.models.at_points import place
-from learn.quantities import cover_at, gap_mm, interior_of
+from learn.quantities import covariates, cover_at, interior_of
 
 Floats = NDArray[np.float64]
 Cloud = Callable[[Setup], Floats]  # points (n, 3) on a setup's top face [m]
@@ -51,12 +51,10 @@ def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iter
         inside = interior(int(store.geometry[poke]))
         return 1e3 * cover_at(store.setup_of(poke), inside, store.path_start[poke], store.direction[poke])
 
-    def size_gap(poke: int, depth: float) -> tuple[float, float]:
-        inside, tip = (
-            interior(int(store.geometry[poke])),
-            store.path_start[poke] + depth * store.direction[poke],
-        )
-        return inside.size, gap_mm(store.setup_of(poke), inside, tip)
+    def covariates_of(poke: int, depth: float) -> Floats:
+        start, direction = store.path_start[poke], store.direction[poke]
+        inside = interior(int(store.geometry[poke]))
+        return covariates(store.setup_of(poke), inside, start=start, direction=direction, depth=depth)
 
     for k, batch in scenes.each(batches):
         found = model.decode(encode(k), pokes_of(batch.to(scenes.device)))
@@ -74,8 +72,8 @@ def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iter
                 softness=np.array(store.softness_names)[store.softness[poke]],
                 shape=np.array(store.shapes)[store.shape[poke]],
                 cover=np.array([cover(int(index)) for index in poke]),
-                size_gap=np.array(
-                    [size_gap(int(p), float(d)) for p, d in zip(poke, batch.depth, strict=True)]
+                covariates=np.array(
+                    [covariates_of(int(p), float(d)) for p, d in zip(poke, batch.depth, strict=True)]
                 ),
                 spread=_or_zero(found.spread, away.shape),
                 force_spread=_or_zero(found.force_spread, poke.shape),

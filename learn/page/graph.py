@@ -108,8 +108,8 @@ class PagePart(nn.Module):
             self.scale = torch.tensor(intervals.scale, dtype=torch.float64)
             self.factors = torch.tensor(intervals.factors, dtype=torch.float64)
             self.rings = torch.tensor(RING_EDGES_MM[1:-1], dtype=torch.float64)
-            self.size_gap = torch.tensor(intervals.size_gap, dtype=torch.float64)
-            self.force_size_gap = torch.tensor(intervals.force_size_gap, dtype=torch.float64)
+            self.growth = torch.tensor(intervals.growth, dtype=torch.float64)
+            self.force_growth = torch.tensor(intervals.force_growth, dtype=torch.float64)
 
     def outputs(self) -> list[str]:
         """Names of the outputs of `forward`."""
@@ -143,8 +143,9 @@ class PagePart(nn.Module):
             found += [values, beyond, distance]
         if self.intervals is not None:
             deep = depth.clamp(min=_LEAST_DEPTH)
-            size_gap = torch.stack([about[3], 1e3 * self._gap(tip + deep * push, soft)])
-            found += self._intervals(u.double(), tip, deep, size_gap, distance)
+            gap = 1e3 * self._gap(tip + deep * push, soft)
+            covariates = torch.stack([about[3], gap, angle * (180 / math.pi)])
+            found += self._intervals(u.double(), tip, deep, covariates, distance)
         return tuple(found)
 
     def _values(self, poke: Tensor, soft: Tensor, about: Tensor) -> Tensor:
@@ -183,7 +184,7 @@ class PagePart(nn.Module):
         return torch.sqrt(square.min()).clamp(max=NEAR)
 
     def _intervals(
-        self, u: Tensor, tip: Tensor, depth: Tensor, size_gap: Tensor, distance: Tensor
+        self, u: Tensor, tip: Tensor, depth: Tensor, covariates: Tensor, distance: Tensor
     ) -> list[Tensor]:
         """Factor around the force and radius at each point [m], as `learn.evaluation.Intervals` has them."""
         assert self.intervals is not None
@@ -193,13 +194,13 @@ class PagePart(nn.Module):
         moved = torch.log(size / depth + 1e-4)
         parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
-        logs = logs + size_gap @ self.size_gap
+        logs = logs + covariates @ self.growth
         ring = (away[:, None] * 1e3 >= self.rings).sum(dim=1)
         # not -expm1(-t), which no runtime has in double: the digits lost at small t are negligible
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
-        fitted = self.intervals.force_scale * torch.exp(size_gap @ self.force_size_gap)
+        fitted = self.intervals.force_scale * torch.exp(covariates @ self.force_growth)
         log = torch.sqrt((self.intervals.force * fitted) ** 2 + unknown * FORCE_UNKNOWN**2)
         return [torch.exp(log), radius]
 

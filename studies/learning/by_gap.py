@@ -42,14 +42,14 @@ def main() -> None:
         found = predict_part(
             run.model, Scenes.of(store), MemoryDataset(store, split_of(store, run.recipe).test)
         )
-        gap = found.size_gap[:, 1]
+        gap = found.covariates[:, 1]
         for low, high in itertools.pairwise(EDGES):
             mine = (gap >= low) & (gap < high)
             if mine.any():
                 part: Predictions = found.where(mine)
                 held = coverage(intervals, part)
                 wrong = float((np.abs(part.force_predicted - part.force) / part.force).mean())
-                width = float(np.median(np.expm1(intervals.force_log(size_gap=part.size_gap))))
+                width = float(np.median(np.expm1(intervals.force_log(covariates=part.covariates))))
                 name = f"{low:g} to {high:g} mm" if np.isfinite(high) else f"{low:g} mm and more"
                 rows.setdefault(name, []).append((int(mine.sum()), wrong, held.force, held.points, width))
     print("gap: frames, error of the force, forces and points in their intervals, half width of the force's")

@@ -98,6 +98,22 @@ def test_pokes_of_the_own_test_part_calibrate_nothing() -> None:
     assert found[1].pokes == alone[1].pokes  # a poke that two runs predict is one draw
 
 
+def test_validation_parts_of_the_others_calibrate_too() -> None:
+    """Of four runs with no more than their test parts the validation parts of three count as much as these."""
+    alone = [_answers(fold, 1.0) for fold in range(4)]
+    parts = [_answers(fold, 1.0, seed=1).predictions for fold in range(4)]
+    parts = [replace(part, poke=part.poke + 100) for part in parts]
+    with_parts = [one._replace(validation=part) for one, part in zip(alone, parts, strict=True)]
+    found = {one.run.recipe.fold: i for one, i in across_folds(with_parts)}
+    joined = [join_predictions([one.predictions, part]) for one, part in zip(alone, parts, strict=True)]
+    assert found[0] == fit_intervals(join_predictions(joined[1:]))
+    # those that are pokes of the own test part calibrate nothing
+    tested = replace(parts[1], poke=alone[0].predictions.poke)
+    again = [alone[0], alone[1]._replace(validation=tested), *alone[2:]]
+    assert across_folds(again)[0][1] == across_folds(alone)[0][1]
+    assert across_folds(again)[2][1] != across_folds(alone)[2][1]
+
+
 def test_copies_of_a_solve_are_no_further_draws() -> None:
     """Three levels that differ by the modulus alone calibrate as one."""
     alone = [_answers(fold, 1.0) for fold in range(3)]
@@ -189,11 +205,16 @@ def test_intervals_that_are_lost_to_fewer_pokes_are_told_of(tmp_path: Path) -> N
 def test_intervals_that_do_not_know_the_gap_are_refused(tmp_path: Path) -> None:
     """Files of before 2026-11-28 are too narrow where the indenter comes near what is rigid."""
     run = _run(tmp_path)
-    own = replace(fit_intervals(_answers(0, 1.0).predictions), size_gap=(0.1, 0.2), force_size_gap=(0.3, 0.4))
+    own = replace(
+        fit_intervals(_answers(0, 1.0).predictions), growth=(0.1, 0.2, 0.3), force_growth=(0.3, 0.4, 0.5)
+    )
     path = save_intervals(run, own)
     assert load_intervals(run) == own
     content = json.loads(path.read_text())
-    old = {"interior": content.pop("size_gap"), "force_interior": content.pop("force_size_gap")}
+    slopes, force_slopes = content.pop("growth"), content.pop("force_growth")
+    path.write_text(json.dumps({**content, "size_gap": slopes[:2], "force_size_gap": force_slopes[:2]}))
+    assert load_intervals(run) == replace(own, growth=(0.1, 0.2, 0.0), force_growth=(0.3, 0.4, 0.0))
+    old = {"interior": slopes[:1], "force_interior": force_slopes[:1]}
     path.write_text(json.dumps({**content, **old}))
     with pytest.raises(
         InputError, match=r"intervals\.json: not readable .*do not know the gap.*writes it again"

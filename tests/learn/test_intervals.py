@@ -22,12 +22,14 @@ def _noisy(
     growth: float = 0.0,
     shapes: int = 1,
     near: float = 0.0,
+    inclined: float = 0.0,
 ) -> Predictions:
     """Predictions with errors that decrease with the distance from the tip and increase with the depth.
 
     `apart` is the standard deviation of the logarithm of a factor common to all errors of a poke. The
     logarithm of the errors grows by `growth` per mm of the inclusion's size, with `shapes` sizes of 1 mm and
-    more, and by `near` per mm of the gap; each poke has its own gap of 2 to 6 mm.
+    more, by `near` per mm of the gap, and by `inclined` per degree; each poke has its own gap of 2 to 6 mm
+    and its own angle of 0 to 45 degrees.
     """
     random = np.random.default_rng(seed)
     frames, n = pokes * 4, 300
@@ -37,8 +39,9 @@ def _noisy(
     truth[..., 2] = -depth[:, None] * np.exp(-away / 0.01)
     shape = np.repeat(np.arange(pokes) % shapes, 4)
     gap = np.repeat(np.random.default_rng([seed, 1]).uniform(2, 6, pokes), 4)
+    angle = np.repeat(np.random.default_rng([seed, 2]).uniform(0, 45, pokes), 4)
     own = np.repeat(np.exp(apart * random.normal(size=pokes)), 4)
-    own *= np.exp(growth * (1 + shape) + near * (gap - 4))
+    own *= np.exp(growth * (1 + shape) + near * (gap - 4) + inclined * (angle - 20))
     scale = more * 0.02 * (own * depth)[:, None] * np.exp(-away / 0.02)
     predicted = truth + random.normal(size=truth.shape) * scale[..., None]
     force = depth * 500
@@ -52,7 +55,7 @@ def _noisy(
         poke=np.repeat(np.arange(pokes), 4),
         softness=np.full(frames, "S0"),
         shape=shape.astype(str),
-        size_gap=np.stack([1.0 + shape, gap], axis=1),
+        covariates=np.stack([1.0 + shape, gap, angle], axis=1),
     )
 
 
@@ -189,44 +192,54 @@ def test_errors_that_grow_with_the_inclusion_are_covered_beside_a_larger_one() -
     five, six = _noisy(200, 0, growth=0.3, shapes=5), _noisy(300, 1, growth=0.3, shapes=6)
     largest = six.where(six.shape == "5")
     intervals = fit_intervals(five)
-    assert intervals.size_gap == pytest.approx((0.3, 0.0), abs=0.03)
-    assert intervals.force_size_gap == pytest.approx((0.3, 0.0), abs=0.1)
+    assert intervals.growth == pytest.approx((0.3, 0.0, 0.0), abs=0.03)
+    assert intervals.force_growth == pytest.approx((0.3, 0.0, 0.0), abs=0.1)
     found = coverage(intervals, largest)
     assert all(0.87 <= ring <= 0.93 for ring in found.rings[:3])  # farther away errors are below 1e-4 mm
     assert 0.82 <= found.force <= 0.96
-    unaware = fit_intervals(dataclasses.replace(five, size_gap=np.zeros(0)))
+    unaware = fit_intervals(dataclasses.replace(five, covariates=np.zeros(0)))
     assert max(coverage(unaware, largest).rings[:3]) < 0.75
 
 
 def test_few_shapes_do_not_say_how_errors_grow() -> None:
     intervals = fit_intervals(_noisy(200, 0, growth=0.3, shapes=4))
-    assert (intervals.size_gap, intervals.force_size_gap) == ((0.0, 0.0), (0.0, 0.0))
+    assert (intervals.growth, intervals.force_growth) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def test_errors_that_grow_near_what_is_rigid_are_covered_there() -> None:
     """Each poke has its own gap."""
     many, other = _noisy(200, 0, near=-0.4, shapes=5), _noisy(400, 1, near=-0.4, shapes=5)
-    nearest = other.where(other.size_gap[:, 1] < 3.0)
+    nearest = other.where(other.covariates[:, 1] < 3.0)
     intervals = fit_intervals(many)
-    assert intervals.size_gap == pytest.approx((0.0, -0.4), abs=0.03)
-    assert intervals.force_size_gap == pytest.approx((0.0, -0.4), abs=0.1)
+    assert intervals.growth == pytest.approx((0.0, -0.4, 0.0), abs=0.03)
+    assert intervals.force_growth == pytest.approx((0.0, -0.4, 0.0), abs=0.1)
     assert all(0.87 <= ring <= 0.93 for ring in coverage(intervals, nearest).rings[:3])
-    unaware = fit_intervals(dataclasses.replace(many, size_gap=np.zeros(0)))
+    unaware = fit_intervals(dataclasses.replace(many, covariates=np.zeros(0)))
     assert max(coverage(unaware, nearest).rings[:3]) < 0.8
+
+
+def test_errors_that_grow_with_the_angle_are_covered_under_an_inclined_indenter() -> None:
+    many, other = (_noisy(n, seed, inclined=0.04, shapes=5) for seed, n in enumerate((200, 400)))
+    steep = other.where(other.covariates[:, 2] > 35.0)
+    intervals = fit_intervals(many)
+    assert intervals.growth == pytest.approx((0.0, 0.0, 0.04), abs=0.01)
+    assert all(0.87 <= ring <= 0.93 for ring in coverage(intervals, steep).rings[:3])
+    unaware = fit_intervals(dataclasses.replace(many, covariates=np.zeros(0)))
+    assert max(coverage(unaware, steep).rings[:3]) < 0.8
 
 
 def test_intervals_of_one_poke_are_those_of_its_frame() -> None:
     intervals = fit_intervals(_noisy(100, 0, growth=0.3, shapes=5, near=-0.2))
     frame = _noisy(5, 1, shapes=5).where(np.arange(20) == 17)
-    assert frame.size_gap[0][0] == 5.0
+    assert frame.covariates[0][0] == 5.0
     radius = intervals.radius_at_mm(
         np.linalg.norm(frame.predicted[0], axis=1),
         away=frame.away[0],
         depth=float(frame.depth[0]),
-        size_gap=frame.size_gap[0],
+        covariates=frame.covariates[0],
     )
     np.testing.assert_allclose(radius, intervals.radius_mm(frame)[0], rtol=1e-6)  # lengths in float32
-    of_force = intervals.force_log(size_gap=frame.size_gap)[0]
-    assert intervals.force_log(size_gap=frame.size_gap[0]) == pytest.approx(of_force, rel=1e-12)
-    bare = dataclasses.replace(frame, size_gap=np.zeros(0))
+    of_force = intervals.force_log(covariates=frame.covariates)[0]
+    assert intervals.force_log(covariates=frame.covariates[0]) == pytest.approx(of_force, rel=1e-12)
+    bare = dataclasses.replace(frame, covariates=np.zeros(0))
     assert (radius > intervals.radius_mm(bare)).all()

@@ -26,7 +26,7 @@ INTERIOR = {"shape": "shape-1", "softness": "S1"}
 WIDTHS = Intervals(
     level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
     factors=[1.5] * 5, force_scale=0.02, force=1.7,
-    size_gap=(0.05, -0.03), force_size_gap=(0.04, -0.02),
+    growth=(0.05, -0.03, 0.02), force_growth=(0.04, -0.02, 0.01),
 )  # fmt: skip
 
 

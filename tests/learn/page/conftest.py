@@ -15,7 +15,7 @@ from tests.learn.small_store import write_store
 WIDTHS = Intervals(
     level=0.9, promised=0.9, pokes=20, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0],
     factors=[1.5, 1.4, 1.3, 1.2, 1.1], force_scale=0.02, force=1.7,
-    size_gap=(0.05, -0.03), force_size_gap=(-0.04, 0.02),
+    growth=(0.05, -0.03, 0.02), force_growth=(-0.04, 0.02, 0.01),
 )  # fmt: skip
 
 
