@@ -99,7 +99,7 @@ def test_pokes_of_the_own_test_part_calibrate_nothing() -> None:
 
 
 def test_validation_parts_of_the_others_calibrate_too() -> None:
-    """Of four runs with no more than their test parts the validation parts of three count as much as these."""
+    """The validation parts of the three others count as much as their test parts."""
     alone = [_answers(fold, 1.0) for fold in range(4)]
     parts = [_answers(fold, 1.0, seed=1).predictions for fold in range(4)]
     parts = [replace(part, poke=part.poke + 100) for part in parts]
