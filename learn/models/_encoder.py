@@ -134,9 +134,7 @@ def gathered(s: Stencil) -> Stencil:
     return Stencil(Gathered(where, w[:, :1].contiguous()), Gathered(where, w[:, 1:].contiguous()))
 
 
-def _sparse(
-    weight: NDArray[np.float64], column: NDArray[Any], start: NDArray[Any], columns: int
-) -> Sparse:
+def _sparse(weight: NDArray[np.float64], column: NDArray[Any], start: NDArray[Any], columns: int) -> Sparse:
     """Matrix of rows that are sorted by column, each from its `start`."""
     shape = (len(start) - 1, columns)
     matrix = scipy.sparse.csr_array((weight.astype(np.float32), column, start), shape=shape)
