@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from factory._course import deepest
 from factory._parts import part_entries
 from factory._record import COUNTERS, unit
-from factory._sampling import LEVELS, SIZE, grid_points, level_depths, profiles
+from factory._sampling import LEVELS, SIZE, codes, grid_points, inside, level_depths
 from factory._schema import (
     FIRST_DIMENSION,
     FIXED_DIMENSION,
@@ -311,14 +311,16 @@ def _block_arrays(plan: Plan, specs: Mapping[str, Spec]) -> dict[str, NDArray[An
 
 
 def _geometry_arrays(plan: Plan) -> dict[str, NDArray[Any]]:
-    pairs = [(inclusion, card) for inclusion in plan.inclusions for card in plan.cards]
-    levels = np.zeros((len(pairs), SIZE, SIZE, LEVELS), dtype=np.uint8)
-    for row, (block, (inclusion, card)) in enumerate(zip(plan.blocks, pairs, strict=True)):
-        levels[row] = profiles(grid_points(block), block[2], inclusion, card.stiffness)
+    silicones = [card.stiffness for card in plan.cards]
+    levels = np.zeros((len(plan.inclusions), len(silicones), SIZE, SIZE, LEVELS), dtype=np.uint8)
+    blocks = plan.blocks[:: len(silicones)]
+    for row, (block, inclusion) in enumerate(zip(blocks, plan.inclusions, strict=True)):
+        rigid = inside(grid_points(block), block[2], inclusion)  # once for all silicones
+        levels[row] = [codes(rigid, stiffness) for stiffness in silicones]
     kinds = _stored_kinds(plan)
-    bodies = [inclusion for inclusion, _ in pairs]
+    bodies = [inclusion for inclusion in plan.inclusions for _ in silicones]
     return {
-        "profile": levels,
+        "profile": levels.reshape(-1, *levels.shape[2:]),
         "inclusion_kind": np.array([kinds.index(body.kind) for body in bodies], dtype=np.uint8),
         "inclusion_size": np.array([_three(body.dimensions) for body in bodies]),
         "inclusion_angle": np.array([_angle(body) for body in bodies]),

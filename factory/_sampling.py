@@ -218,7 +218,16 @@ def profiles(
     ndarray of uint8, shape (rows, columns, 128)
         round(255 code), exact for the codes 1.0, 0.8, 0.4 and 0.0; top level first.
     """
+    return codes(inside(grid, height, inclusion), stiffness)
+
+
+def inside(grid: NDArray[np.float64], height: float, inclusion: Inclusion) -> NDArray[np.bool_]:
+    """True where the inclusion is under each grid point, in the order of `profiles`."""
     points = np.repeat(grid[:, :, None, :], LEVELS, axis=2)
     points[..., 2] -= level_depths(height)
-    soft, rigid = round(255 * stiffness), round(255 * RIGID)
-    return np.where(inclusion.contains(points), rigid, soft).astype(np.uint8)
+    return inclusion.contains(points)
+
+
+def codes(inclusion: NDArray[np.bool_], stiffness: float) -> NDArray[np.uint8]:
+    """Stiffness codes of an inclusion, which is True, in silicone of one code."""
+    return np.where(inclusion, round(255 * RIGID), round(255 * stiffness)).astype(np.uint8)

@@ -183,11 +183,13 @@ def plain_files(folder: Path) -> Iterator[tuple[str, Path, bool]]:
     """
     found: list[tuple[str, Path, bool]] = []
     for root, folders, files in os.walk(folder, followlinks=False):
+        inner = Path(root).relative_to(folder).as_posix()
+        before = "" if inner == "." else f"{inner}/"
         for name in (*folders, *files):
-            path = Path(root) / name
-            mode = path.lstat().st_mode
+            path = os.path.join(root, name)  # noqa: PTH118 - a store has hundreds of files, and a Path is slow
+            mode = os.lstat(path).st_mode
             if not stat.S_ISDIR(mode):
-                found.append((path.relative_to(folder).as_posix(), path, stat.S_ISREG(mode)))
+                found.append((before + name, Path(path), stat.S_ISREG(mode)))
     yield from sorted(found)
 
 

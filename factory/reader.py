@@ -146,7 +146,9 @@ class Dataset:
         with self._damage_named(name):
             if not (self.root / name / "zarr.json").is_file():  # the root's metadata list it nonetheless
                 raise KeyError(name)
-            array = self.group[name]
+            if name not in self._opened:
+                self._opened[name] = self.group[name]
+            array = self._opened[name]
         if name in self._lost:  # Zarr reads a missing chunk as zeros
             raise DamagedError(f"{self.path / self._lost[name]}: missing, and the manifest lists it")
         return array
@@ -156,6 +158,11 @@ class Dataset:
         array = self.array(name)
         with self._damage_named(name):
             return np.asarray(array[rows])
+
+    @cached_property
+    def _opened(self) -> dict[str, Any]:
+        """Arrays opened so far: each look-up in the group costs about as much as reading a table."""
+        return {}
 
     @cached_property
     def _lost(self) -> dict[str, str]:

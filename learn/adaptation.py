@@ -248,7 +248,7 @@ def adapt(
     steps = _Steps(sum(tuning.steps(used[~part], chosen.epochs) for part in parts), on_progress)
 
     def predicted(model: Model, part: NDArray[np.bool_]) -> Predictions:
-        return predict_part(model, tuning.scenes, MemoryDataset(store, used[part]))
+        return predict_part(model, tuning.scenes, MemoryDataset(store, used[part]), prepared=tuning.prepared)
 
     own = run.model.to(device)
     before = join_predictions([predicted(own, part) for part in parts])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -32,16 +32,37 @@ class Predicts(Protocol):
     def decode(self, encoded: Any, pokes: Pokes) -> Response: ...
 
 
-def predict_part(model: Predicts, scenes: Scenes, data: MemoryDataset, *, batch: int = 64) -> Predictions:
-    """Predictions of all frames of a part; `scenes` are those of the store, on the model's device."""
-    return predict_batches(model, scenes, data.store, data.batches(batch))
+def predict_part(
+    model: Predicts,
+    scenes: Scenes,
+    data: MemoryDataset,
+    *,
+    batch: int = 64,
+    prepared: Sequence[Any] | None = None,
+) -> Predictions:
+    """Predictions of all frames of a part; `scenes` are those of the store, on the model's device.
+
+    `prepared`: what `model.prepare` gives for each scene, where that is known.
+    """
+    return predict_batches(model, scenes, data.store, data.batches(batch), prepared)
 
 
 @torch.no_grad()
-def predict_batches(model: Predicts, scenes: Scenes, store: Store, batches: Iterable[Batch]) -> Predictions:
+def predict_batches(
+    model: Predicts,
+    scenes: Scenes,
+    store: Store,
+    batches: Iterable[Batch],
+    prepared: Sequence[Any] | None = None,
+) -> Predictions:
     """Predictions of these batches, of each in the order of its scenes, which are on the model's device."""
     parts: list[Predictions] = []
-    encode = functools.cache(lambda k: model.encode(scenes.scenes[k], model.prepare(scenes.scenes[k])))
+
+    @functools.cache
+    def encode(k: int) -> Any:
+        scene = scenes.scenes[k]
+        return model.encode(scene, model.prepare(scene) if prepared is None else prepared[k])
+
     points = functools.cache(lambda k: scenes.scenes[k].points.cpu().numpy())
     interior = functools.cache(
         lambda geometry: interior_of(store.setups[store.setup_index[geometry]], store.profile[geometry])

@@ -103,14 +103,15 @@ def stencil(points: NDArray[np.float64], radius: float, area: NDArray[np.float64
     own = np.arange(n)
     row = np.concatenate([pairs[:, 0], pairs[:, 1], own])
     column = np.concatenate([pairs[:, 1], pairs[:, 0], own])
+    # sorted by row and column once: the mean and the three slopes have the same neighbours
+    order = scipy.sparse.coo_array((np.arange(len(row)), (row, column)), shape=(n, n)).tocsr()
+    row, column, start = row[order.data], column[order.data], order.indptr
     offset = (points[column] - points[row]) / radius
     weight = area[column] * (1 - np.minimum((offset**2).sum(axis=1), 1)) ** 2
     weight /= np.bincount(row, weight, minlength=n)[row]
-    slopes = [(row + k * n, column, weight * offset[:, k]) for k in range(3)]
-    slope_row, slope_column, slope_weight = (np.concatenate(part) for part in zip(*slopes, strict=True))
-    return Stencil(
-        _sparse(row, column, weight, (n, n)), _sparse(slope_row, slope_column, slope_weight, (3 * n, n))
-    )
+    starts = np.concatenate([start[:-1] + k * len(row) for k in range(3)] + [[3 * len(row)]])
+    slope = (weight[:, None] * offset).T.ravel()
+    return Stencil(_sparse(weight, column, start, n), _sparse(slope, np.tile(column, 3), starts, n))
 
 
 def gathered(s: Stencil) -> Stencil:
@@ -134,14 +135,11 @@ def gathered(s: Stencil) -> Stencil:
     return Stencil(Gathered(where, w[:, :1].contiguous()), Gathered(where, w[:, 1:].contiguous()))
 
 
-def _sparse(
-    row: NDArray[Any], column: NDArray[Any], weight: NDArray[np.float64], shape: tuple[int, int]
-) -> Sparse:
-    matrix = scipy.sparse.coo_array((weight.astype(np.float32), (row, column)), shape=shape).tocsr()
-    matrix.sort_indices()
-    transposed = matrix.T.tocsr()
-    transposed.sort_indices()
-    return Sparse(_torch(matrix), _torch(transposed))
+def _sparse(weight: NDArray[np.float64], column: NDArray[Any], start: NDArray[Any], columns: int) -> Sparse:
+    """Matrix of rows that are sorted by column, each from its `start`."""
+    shape = (len(start) - 1, columns)
+    matrix = scipy.sparse.csr_array((weight.astype(np.float32), column, start), shape=shape)
+    return Sparse(_torch(matrix), _torch(matrix.T.tocsr()))
 
 
 def _torch(matrix: Any) -> Tensor:

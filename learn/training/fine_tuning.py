@@ -55,7 +55,7 @@ class FineTuning:
         self._run, self._store, self._recipe = run, store, recipe
         self._group = ProcessGroup(0, 1, torch.device(device))
         self.scenes = Scenes.of(store).to(self._group.device)
-        self._prepared = [run.model.prepare(scene) for scene in self.scenes.scenes]
+        self.prepared = [run.model.prepare(scene) for scene in self.scenes.scenes]
 
     def steps(self, rows: NDArray[np.int64], epochs: int) -> int:
         """Number of steps of so many epochs on these frames."""
@@ -88,7 +88,7 @@ class FineTuning:
         optimisation = Optimisation(model, recipe, statistics, self._group)
         scenes = self.scenes.only(store.geometry[store.frame_poke[rows]])
         augmentation = Augmentation(
-            store, recipe, rows, scenes=scenes, prepared=self._prepared, prepare=model.prepare
+            store, recipe, rows, scenes=scenes, prepared=self.prepared, prepare=model.prepare
         )
         total, epoch = self.steps(rows, recipe.epochs), 0
         for last in epochs:
@@ -110,7 +110,7 @@ class FineTuning:
         for batch in data.batches(64):
             for k, _, part in self.scenes.parts(batch.to(self._group.device)):
                 scene = self.scenes.scenes[k]
-                force = model.decode(model.encode(scene, self._prepared[k]), pokes_of(part)).force
+                force = model.decode(model.encode(scene, self.prepared[k]), pokes_of(part)).force
                 logs.append(torch.log(part.force[force > 0.0] / force[force > 0.0]).double())
         model.cpu()
         every = torch.cat(logs)

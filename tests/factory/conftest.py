@@ -22,6 +22,9 @@ from factory._staging import building_folder
 from factory._store import LEDGER
 from factory.plan import Plan, PlannedPoke, make_plan
 from factory.recipe import Recipe, load_recipe
+from tests.unrendered import unrendered
+
+__all__ = ["unrendered"]
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent

@@ -203,8 +203,11 @@ def test_the_command_counts_what_it_checked(simulated: Path) -> None:
     assert "--pokes and --workers: expected with --assembly" in refused.output
 
 
-def test_pokes_that_cannot_be_checked_are_listed(finished_store: Path) -> None:
+def test_pokes_that_cannot_be_checked_are_listed(
+    finished_store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The meshes of the stand-in are not tisim's."""
+    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
     found = check_assembly(open_dataset(finished_store), pokes=2, workers=1)
     assert (found.pokes, found.frames, found.faults, found.largest) == (0, 0, [], None)
     assert len(found.not_checked) == 2

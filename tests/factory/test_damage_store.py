@@ -348,6 +348,7 @@ def test_a_profile_that_is_not_the_inclusion_is_found(store: Path) -> None:
     ("folder", "name"),
     [("my[red] set", "a b"), ("x[", "b]"), ("a[b]c:smile:", "[link=x]y")],
 )
+@pytest.mark.usefixtures("unrendered")
 def test_names_are_printed_as_they_are(
     folder: str, name: str, tmp_path: Path, serial: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -384,6 +385,7 @@ def _standin(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_build, "build_dataset", build)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_little_room_is_said_before_the_build(
     tmp_path: Path, serial: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,7 +20,7 @@ SMALL = f"""
 name: small
 description: one indentation of a small viscous block
 seed: 3
-block_mm: [60, 60, 20]
+block_mm: [44, 44, 16]
 rod: {{radius_mm: 2.5, length_mm: 40}}
 friction: 0.6
 protocol:
@@ -33,7 +33,7 @@ protocol:
 softness: [S1-viscous]
 border_mm: 5
 cover_mm: 6
-refinement: 0.6
+refinement: 0.5
 shapes:
   - {{kind: sphere, id: ball, radius_mm: 5}}
 """

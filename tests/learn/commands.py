@@ -9,7 +9,7 @@ from typer.testing import CliRunner, Result
 import learn.train
 
 RECIPE = (
-    "name: small\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
+    "name: small\nmodel: invariant-gnn-small\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
     "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"
 )
 

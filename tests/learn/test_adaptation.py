@@ -132,6 +132,7 @@ def test_without_a_gain_the_run_s_own_network_is_kept(
             yield tuned
 
     monkeypatch.setattr(FineTuning, "stages", worse)
+    monkeypatch.setattr(learn.adaptation, "PARTS", 2)  # each part takes a training
     found = adapt(run, open_store(body), recipe=adapt_recipe(run, FEW))
     assert found.epochs is None
     assert "the run's own network is kept" in found.verdict
@@ -157,8 +158,9 @@ def test_the_adapted_run_predicts_its_body_with_intervals(
 
 
 def test_intervals_keep_the_error_scale_of_the_run(
-    trained_on: Path, run: Run, body: Path, tmp_path: Path
+    trained_on: Path, run: Run, body: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(learn.adaptation, "PARTS", 2)  # each part takes a training
     store = open_store(trained_on)
     scenes, rows = Scenes.of(store), split_of_run(store, run).validation
     own = fit_intervals(predict_part(run.model, scenes, MemoryDataset(store, rows)))

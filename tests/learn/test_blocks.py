@@ -31,7 +31,8 @@ from tests.learn.commands import call
 from tests.learn.small_store import grid, write_manifest, write_store
 
 SIZES = ((0.08, 0.1, 0.025), (0.1, 0.09, 0.032), (0.12, 0.08, 0.038), (0.09, 0.12, 0.028))
-RECIPE = Recipe(name="tiny", epochs=1, batch=6, point_dropout=0.5, point_jitter=0.5)
+MODEL = "invariant-gnn-small"
+RECIPE = Recipe(name="tiny", model=MODEL, epochs=1, batch=6, point_dropout=0.5, point_jitter=0.5)
 SPHERE = {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 6]}
 POKE = {"site_mm": [5, -10], "depth_mm": 2, "inclusion": SPHERE, "softness": "S1"}
 
@@ -198,13 +199,14 @@ def test_training_streamed_is_training_in_memory_but_for_the_order(store: Store,
     """One batch holds the whole part, so that order is nothing: the losses are equal."""
     losses = []
     for data in ("memory", "stream"):
-        recipe = Recipe(name="tiny", epochs=1, batch=64, point_dropout=0.0, data=data)
+        recipe = Recipe(name="tiny", model=MODEL, epochs=1, batch=64, point_dropout=0.0, data=data)
         Trainer(store, recipe, tmp_path / data).train()
         line = json.loads((tmp_path / data / "log.jsonl").read_text().splitlines()[-1])
         losses.append([line["train_loss"], line["validation_mean_mm"]])
     np.testing.assert_allclose(losses[0], losses[1], rtol=1e-4)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_evaluation_with_clouds(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(evaluation, "CLOUD_SIZES", (200,))
     monkeypatch.setattr(evaluation, "CLOUD_SEEDS", 1)
@@ -259,7 +261,11 @@ def test_in_real_time_as_poke_by_poke(run: Path) -> None:
 
 def test_another_block_than_the_only_one_is_outside(tmp_path: Path) -> None:
     store = open_store(write_store(tmp_path / "s.zarr", sites=1, frames=1))
-    Trainer(store, Recipe(name="tiny", epochs=1, batch=64, point_dropout=0.0), tmp_path / "run").train()
+    Trainer(
+        store,
+        Recipe(name="tiny", model=MODEL, epochs=1, batch=64, point_dropout=0.0),
+        tmp_path / "run",
+    ).train()
     predictor = learn.load(tmp_path / "run")
     here, there = (predictor.predict({**POKE, **more}) for more in ({}, {"block_mm": [100, 100, 24]}))
     assert "block_z_mm" in {check.key for check in there.outside} - {check.key for check in here.outside}

@@ -23,7 +23,7 @@ from learn._terminal import print_table
 from learn.metrics import METRICS
 from learn.models import MODELS
 from learn.training import RECIPES, load_run
-from tests.learn.commands import RECIPE, call, refused, train_small
+from tests.learn.commands import call, refused, train_small
 from tests.learn.small_store import write_store
 
 ROOT = Path(__file__).parents[2]
@@ -106,6 +106,7 @@ def test_tables_fit_the_terminal(width: int, models: int, capsys: pytest.Capture
     assert "…" not in shown
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_plugin_brings_a_metric_and_a_model(store: Path, tmp_path: Path) -> None:
     """Train, evaluate and predict with a metric and a model from a file outside the package."""
     flags = ("--plugin", PLUGIN)
@@ -138,10 +139,11 @@ def test_without_its_plugin_a_run_is_refused(
     refused(call(learn.evaluate.app, run, "--plugin", tmp_path / "no.py"), "no.py: expected a Python file")
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
     """With one validation poke the terminal and the report state why there is no table."""
     store = write_store(tmp_path / "s.zarr", shapes=3, softness=("S0",), sites=1, frames=2)
-    run = train_small(store, tmp_path / "run", "--epochs", 1)
+    run = train_small(store, tmp_path / "run", "--epochs", 1, "--model", "invariant-gnn-small")
     done = call(learn.evaluate.app, run, "--no-clouds", "--no-baselines", "--threads", 1)
     assert done.exit_code == 0, done.output
     reason = "intervals need at least two validation pokes, there is 1"
@@ -153,9 +155,10 @@ def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
     assert sorted(p.stem for p in (run / "evaluation").glob("*.png")) == ["force", "learning", "only"]
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_names_with_brackets_are_no_markup(store: Path, tmp_path: Path) -> None:
     folder = tmp_path / "[bold]run[/x]"
-    run = train_small(store, folder, recipe=RECIPE.replace("epochs: 3", "epochs: 1"))
+    run = train_small(store, folder, "--model", "invariant-gnn-small", "--epochs", 1)
     scene = tmp_path / "poke[red].yaml"
     scene.write_text(POKE)
     done = call(learn.predict.app, run, scene, "--out", tmp_path / "out[/]")

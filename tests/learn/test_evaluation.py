@@ -30,6 +30,7 @@ from learn.scene_file import load_poke, scene_and_poke
 from learn.training import Run, load_run
 from tests.learn.small_store import write_store
 
+MODEL = "invariant-gnn-small"  # no statement here is about a certain network
 POKE = "site_mm: [5, -10]\ndepth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1\nsoftness: S1\n"
 
 
@@ -43,7 +44,7 @@ def run(store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run") / "run"
     recipe = folder.parent / "r.yaml"
     recipe.write_text(
-        "name: small\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
+        f"name: small\nmodel: {MODEL}\nepochs: 3\nbatch: 8\nema_decay: 0.9\ntrain_depth_mm: 2.5\n"
         "near_weight: 20\nnear_width_mm: 6\ndepth_power: 0\n"  # weighs absolute errors, as the mean does
     )
     done = _call(learn.train.app, store, "--recipe", recipe, "--out", folder, "--threads", 1)
@@ -70,10 +71,18 @@ def _means_by_hand(folder: Path) -> list[float]:
     return np.mean(found, axis=0).tolist()
 
 
-def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(learn.baselines, "_STEPS", 50)
-    done = _call(learn.evaluate.app, run, "--threads", 1, "--no-clouds")
+@pytest.fixture(scope="module")
+def evaluated(run: Path) -> Path:
+    """The run, with its evaluation and its intervals."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(learn.baselines, "_STEPS", 50)
+        done = _call(learn.evaluate.app, run, "--threads", 1, "--no-clouds")
     assert done.exit_code == 0, done.output
+    return run
+
+
+def test_report_and_tables(evaluated: Path) -> None:
+    run = evaluated
     html = (run / "evaluation" / "report.html").read_text()
     assert html.count("data:image/png;base64") == 5
     for name in ("learning", "best", "median", "worst", "force"):
@@ -81,12 +90,12 @@ def test_report_and_tables(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for words in ("analytic kernel", "zero displacement", "Symmetry", "Intervals", "Deeper"):
         assert words in html
     tables = json.loads((run / "evaluation" / "tables.json").read_text())
-    ours, zero = (tables["tables"][name]["all"] for name in ("invariant-gnn", "zero displacement"))
+    ours, zero = (tables["tables"][name]["all"] for name in (MODEL, "zero displacement"))
     assert set(ours) == set(METRICS)
     assert [ours["mean"]["mean"], zero["mean"]["mean"]] == pytest.approx(_means_by_hand(run), rel=1e-4)
     assert ours["mean"]["mean"] < zero["mean"]["mean"]
-    assert tables["symmetry"]["invariant-gnn, fold 0"]["displacement_mm"] < 1e-5
-    assert set(tables["tables"]["invariant-gnn"]) == {"S0", "S1", "all"}
+    assert tables["symmetry"][f"{MODEL}, fold 0"]["displacement_mm"] < 1e-5
+    assert set(tables["tables"][MODEL]) == {"S0", "S1", "all"}
     assert (run / "intervals.json").is_file()
 
 
@@ -127,18 +136,18 @@ def test_runs_that_differ_in_more_than_the_fold_have_rows_of_their_own(store: Pa
     same = replace(_changed(loaded, seed=5), domain=None)  # of before the domain was recorded
     alone = evaluate([loaded], data, baselines=False, clouds=False)
     both = evaluate([loaded, same], data, baselines=False, clouds=False)
-    assert (both.pokes, both.frames, both.models) == (alone.pokes, alone.frames, ["invariant-gnn"])
-    first, second = (both.covered[f"invariant-gnn, fold 0{more}"] for more in ("", ", seed 5"))
+    assert (both.pokes, both.frames, both.models) == (alone.pokes, alone.frames, [MODEL])
+    first, second = (both.covered[f"{MODEL}, fold 0{more}"] for more in ("", ", seed 5"))
     assert (first.found, first.radius_mm) == (second.found, second.radius_mm)  # taken from the dataset
     apart = evaluate([loaded, other], data, baselines=False, clouds=False)
     name = loaded.recipe.name
-    assert apart.models == [f"invariant-gnn ({name} 1)", f"invariant-gnn ({name} 2)"]
-    mixed = replace(both, models=[*both.models, "b"], folds={**both.folds, "b": alone.folds["invariant-gnn"]})
+    assert apart.models == [f"{MODEL} ({name} 1)", f"{MODEL} ({name} 2)"]
+    mixed = replace(both, models=[*both.models, "b"], folds={**both.folds, "b": alone.folds[MODEL]})
     for found, words in (
         (alone, "over frames, as in the paper."),
         (apart, "over frames, as in the paper."),
         (both, "over runs."),
-        (mixed, "over runs for invariant-gnn; over frames, as in the paper, for b."),
+        (mixed, f"over runs for {MODEL}; over frames, as in the paper, for b."),
     ):
         assert f"± is the standard deviation {words}" in tables(found)["The paper's table"][1][0]
 
@@ -154,7 +163,7 @@ def test_runs_that_differ_in_more_than_the_seed_are_not_joined(store: Path, run:
     second, longer = _changed(loaded, seed=1, name="other"), _changed(loaded, epochs=77)
     [(joined, name)] = ensembles([loaded, second, longer])
     assert joined.members == (loaded.folder, second.folder)
-    assert name == f"invariant-gnn ({loaded.recipe.name} 1), 2 together"
+    assert name == f"{MODEL} ({loaded.recipe.name} 1), 2 together"
     refused: list[tuple[list[Run], str]] = [
         ([loaded, replace(second, uuid="other")], "trained on dataset other"),
         ([loaded, second, _changed(loaded, seed=0)], f"seed-0: .* has seed 0, as {run}"),
@@ -183,7 +192,7 @@ def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
     done = _call(learn.evaluate.app, *runs, *flags)
     assert done.exit_code == 0, done.output
     tables = json.loads((tmp_path / "all" / "tables.json").read_text())
-    names = [f"invariant-gnn, fold {k}" for k in range(3)]
+    names = [f"{MODEL}, fold {k}" for k in range(3)]
     assert list(tables["intervals"]) == [*names, *(f"{name}, by the other folds" for name in names)]
     assert "mean of those by the other folds" in (tmp_path / "all" / "report.html").read_text()
     tested = [split_pokes(open_store(store), fold=k, train_depth=2.5e-3).test for k in range(3)]
@@ -194,18 +203,19 @@ def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
         assert kept["pokes"] == sum(others)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_runs_together(run: Path, second: Path, tmp_path: Path) -> None:
     """Two runs as an ensemble: its own row of the tables, intervals, symmetry and mean predictions."""
     flags = ("--ensemble", "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "both")
     done = _call(learn.evaluate.app, run, second, *flags)
     assert done.exit_code == 0, done.output
     tables = json.loads((tmp_path / "both" / "tables.json").read_text())
-    assert list(tables["tables"]) == ["invariant-gnn, 2 together", "invariant-gnn"]
-    assert tables["symmetry"]["invariant-gnn, 2 together, fold 0"]["displacement_mm"] < 1e-5
+    assert list(tables["tables"]) == [f"{MODEL}, 2 together", MODEL]
+    assert tables["symmetry"][f"{MODEL}, 2 together, fold 0"]["displacement_mm"] < 1e-5
     assert list(tables["intervals"]) == [
-        "invariant-gnn, 2 together, fold 0",
-        "invariant-gnn, fold 0",
-        "invariant-gnn, fold 0, seed 1",
+        f"{MODEL}, 2 together, fold 0",
+        f"{MODEL}, fold 0",
+        f"{MODEL}, fold 0, seed 1",
     ]
     scene = tmp_path / "poke.yaml"
     scene.write_text(POKE)
@@ -258,6 +268,7 @@ def test_a_damaged_run_is_refused(run: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "evaluation").exists()
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_prediction_of_one_poke(run: Path, tmp_path: Path) -> None:
     scene = tmp_path / "poke.yaml"
     scene.write_text(POKE)
@@ -363,14 +374,12 @@ def test_other_clouds_see_the_same_field(tmp_path: Path) -> None:
     assert interpolation_error_mm(store, rows) < 1e-6
 
 
-def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("unrendered")
+def test_another_dataset_where_it_is_asked_for(evaluated: Path, tmp_path: Path) -> None:
     """Transfer tests all pokes of shapes unseen by the run, no others, and keeps the run's intervals."""
+    run = evaluated
     other = write_store(tmp_path / "o.zarr", shapes=5, sites=2, frames=2)
     flags = ("--transfer", "--no-clouds", "--threads", 1)
-    own = _call(
-        learn.evaluate.app, run, "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "own"
-    )
-    assert own.exit_code == 0, own.output
     kept = (run / "intervals.json").read_bytes()
     for extra, words in (
         (["--transfer"], "expected another --dataset"),
@@ -384,11 +393,11 @@ def test_another_dataset_where_it_is_asked_for(run: Path, tmp_path: Path) -> Non
     allowed = _call(learn.evaluate.app, run, "--dataset", other, "--out", tmp_path / "out", *flags)
     assert allowed.exit_code == 0, allowed.output
     tables = json.loads((tmp_path / "out" / "tables.json").read_text())
-    assert list(tables["tables"]) == ["invariant-gnn"]
-    assert list(tables["intervals"]) == ["invariant-gnn, fold 0"]
+    assert list(tables["tables"]) == [MODEL]
+    assert list(tables["intervals"]) == [f"{MODEL}, fold 0"]
     # the training part has one interior, and not the smaller nor the larger ones
-    assert all(name.startswith("invariant-gnn, fold 0, ") for name in tables["outside"])
-    assert "invariant-gnn, fold 0, beyond 1" in tables["outside"]
+    assert all(name.startswith(f"{MODEL}, fold 0, ") for name in tables["outside"])
+    assert f"{MODEL}, fold 0, beyond 1" in tables["outside"]
     frames = sum(one["frames"] for one in tables["outside"].values())
     assert frames == tables["test_frames"]
     assert "Outside what was trained" in (tmp_path / "out" / "report.html").read_text()

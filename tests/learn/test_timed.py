@@ -29,7 +29,7 @@ from tests.learn.commands import call, train_small
 from tests.learn.small_store import write_manifest, write_store
 
 PHASES = ("load", "hold", "retract", "reload", "rest")
-TINY = Recipe(name="tiny", epochs=1, batch=4, ema_decay=0.9)
+TINY = Recipe(name="tiny", model="invariant-gnn-small", epochs=1, batch=4, ema_decay=0.9)
 POKE = {"site_mm": [5, -10], "depth_mm": 2, "shape": "shape-1", "softness": "S1"}
 CLOCK = {"time_s": 1.0, "rod_speed_mm_per_s": 0.0, "approach_speed_mm_per_s": 2.0}
 
@@ -235,6 +235,7 @@ def test_time_counts_in_the_distance_of_an_evaluation(run: Path, tmp_path: Path)
     assert (later > inside + 1.0).all()
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_model_without_time_on_a_dataset_with_time_is_said_to_be_one(
     folder: Path, run: Path, tmp_path: Path
 ) -> None:

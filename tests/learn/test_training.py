@@ -28,7 +28,7 @@ from learn.training.run_folder import load_checkpoint, save_checkpoint
 from tests.learn.small_store import write_store
 
 ROOT = Path(__file__).parent.parent.parent
-TINY = Recipe(name="tiny", epochs=2, batch=4, ema_decay=0.9)
+TINY = Recipe(name="tiny", model="invariant-gnn-small", epochs=2, batch=4, ema_decay=0.9)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -122,8 +122,8 @@ def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) ->
     for name in ("best.pt", "last.pt"):
         content = load_checkpoint(tmp_path / "run" / name)
         save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
-    now = MODELS["invariant-gnn"].version
-    with pytest.raises(InputError, match=f"of version 1 of model invariant-gnn, this is version {now}"):
+    now = MODELS[TINY.model].version
+    with pytest.raises(InputError, match=f"of version 1 of model {TINY.model}, this is version {now}"):
         load_run(tmp_path / "run")
     with pytest.raises(InputError, match="train again"):
         _train(folder, TINY, tmp_path / "run", resume=True)

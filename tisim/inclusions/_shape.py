@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
+from functools import cache
 from typing import Any, ClassVar, Self, get_origin, get_type_hints
 
 import numpy as np
@@ -177,6 +178,7 @@ class Inclusion(ABC):
         return plain
 
 
+@cache  # resolving annotations took half of the time of a plan, of which each poke is checked
 def _is_triple(shape: type[Inclusion], name: str) -> bool:
     """True if a field is a triple of lengths, by its annotation."""
     return get_origin(get_type_hints(shape)[name]) is tuple
