@@ -231,18 +231,17 @@ def _check_edge(image: Grey, found: Foreground, label: int, edge: Edge, view: Vi
     burnt = cv2.dilate(burnt.astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
     at = np.clip(np.rint(edge.points).astype(int), 0, [image.shape[1] - 1, image.shape[0] - 1])
     glare = burnt[at[:, 1], at[:, 0]]
-    picture = show_body(image, found, label)
     if glare.sum() * scale > _LOST:
         raise PhotoProblem(
             f"glare on the specimen's edge: {glare.sum() * scale * 1e3:.0f} mm of its contour are burnt out",
-            draw_points(picture, edge.points[glare][::8], RED),
+            draw_points(show_body(image, found, label), edge.points[glare][::8], RED),
         )
     lost = ~edge.found | (edge.contrast < _FAINT)
     if lost.sum() * scale > _LOST:
         raise PhotoProblem(
             f"the specimen's edge is too faint on {lost.sum() * scale * 1e3:.0f} mm of its contour: expected "
             "a background that differs from it",
-            draw_points(picture, edge.points[lost][::8], RED),
+            draw_points(show_body(image, found, label), edge.points[lost][::8], RED),
         )
 
 

@@ -195,20 +195,24 @@ def find_body(
     near, far = _clamp(mask, plan, height), None
     if far_clamp:
         far = _clamp(mask[:, ::-1], Plan(labels=plan.labels, x=plan.x[::-1], z=plan.z), height)
-    picture = draw_mask(image, [found.labels == label])
     if near is None and clamp_needed:
         raise PhotoProblem(
             f"the clamp's face was not found: expected the specimen's left end in a clamp at least {_TALL:g} "
             "times as high, or board_corner_mm in photographs.yaml",
-            picture,
+            show_body(image, found, label),
         )
     if far_clamp and far is None:
-        raise PhotoProblem("the far clamp was not found at the specimen's right end", picture)
+        raise PhotoProblem(
+            "the far clamp was not found at the specimen's right end", show_body(image, found, label)
+        )
     touching = (cv2.dilate(found.board.astype(np.uint8), np.ones((7, 7), np.uint8)) > 0) & (
         found.labels == label
     )
     if touching.any():
-        raise PhotoProblem("specimen or clamp cover the board or come within half a square of it", picture)
+        raise PhotoProblem(
+            "specimen or clamp cover the board or come within half a square of it",
+            show_body(image, found, label),
+        )
     return Body(label=label, near=near, far=far)
 
 

@@ -55,13 +55,12 @@ def find_face(
     A camera to the right of the face sees the face, and its far edge (back) before the background; one to the
     left sees the near edge (front). Raises PhotoProblem where the edge is not there or leans.
     """
-    picture = show_body(image, found, label)
     edge_y = back if view.eye[0] > clamp.x else front
     if edge_y is None:
         raise PhotoProblem(
             "the camera stands to the left of the clamp's face, whose near edge is not known: expected "
             "clamp_front_mm or board_corner_mm in photographs.yaml, or a camera further to the right",
-            picture,
+            show_body(image, found, label),
         )
     step = 0.0001
     pieces = []
@@ -78,7 +77,10 @@ def find_face(
         pieces.append(edge.points[edge.found])
     pixels = np.concatenate(pieces) if pieces else np.zeros((0, 2))
     if len(pixels) < 20:
-        raise PhotoProblem("the clamp's face was not found: no clear edge above or below the beam", picture)
+        raise PhotoProblem(
+            "the clamp's face was not found: no clear edge above or below the beam",
+            show_body(image, found, label),
+        )
     seen = view.on_plane(pixels, edge_y)
     middle = 0.5 * sum(clamp.beam_z)
     slope, x = _robust_line(seen[:, 1] - middle, seen[:, 0])
@@ -87,7 +89,7 @@ def find_face(
         raise PhotoProblem(
             f"the clamp's face leans {np.degrees(np.arctan(slope)):.1f} degrees off the board's vertical, "
             f"expected at most {np.degrees(_LEAN):.0f}: hang the board parallel to the clamp",
-            picture,
+            show_body(image, found, label),
         )
     # points along an edge err together: a tenth of them count
     sd = float(robust_sd(left)) / np.sqrt(max(len(left) / 10, 1.0)) + 5e-6

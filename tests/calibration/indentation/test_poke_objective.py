@@ -29,7 +29,7 @@ LINE = 450.0 * DEPTH
 FREE = parametrisation("neo-hookean")
 HELD = FREE.holding("bulk_ratio")
 MOONEY = parametrisation("mooney-rivlin").holding("bulk_ratio")
-COARSER = 0.8  # coarser than the default, for speed
+COARSER = 0.76  # coarser than the default, for speed
 
 
 def pokes_of(*trials: PokeTrial, law: Parametrisation = FREE, **options: Any) -> Pokes:

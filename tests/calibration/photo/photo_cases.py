@@ -92,9 +92,9 @@ def _integrate(s: Array, angle: Array) -> Array:
     return np.vstack([[0.0, 0.0], np.cumsum(move, axis=0)])
 
 
-def true_body(axis: Array, radius: float = RADIUS, sides: int = 64) -> trimesh.Trimesh:
+def true_body(axis: Array, radius: float = RADIUS, sides: int = 64, stations: int = 100) -> trimesh.Trimesh:
     """Tube about an axis as a closed mesh [m]; its polygonal section has the area of the circle."""
-    points = axis[:: max(1, len(axis) // 400)] if (len(axis) - 1) % 400 == 0 else axis
+    points = axis[:: max(1, len(axis) // stations)] if (len(axis) - 1) % stations == 0 else axis
     tangent = np.gradient(points, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     turn = 2 * np.pi * np.arange(sides) / sides

@@ -204,7 +204,7 @@ def test_a_board_photographed_at_another_size_is_refused(lab: Path, tmp_path: Pa
     folder = tmp_path / "lab"
     shutil.copytree(lab, folder)
     lens = Lens(size=(1000, 750), focal=2325.0, centre=(500.0, 372.0), k1=-0.2)
-    setting = Setting(tubes=(Tube(axis=AXIS, radius=10.0),), blur=0.8)
+    setting = Setting(tubes=(), clamps=(), blur=0.8)
     cv2.imwrite(str(folder / "board.png"), photograph(setting, lens, View()))
     (folder / "photographs.yaml").write_text("calibration_photos: [board.png]")
     result = command(folder, "--out", tmp_path / "out")

@@ -91,8 +91,13 @@ def images() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def camera(images: dict[str, np.ndarray]) -> Camera:
-    return calibrate([find_board(image, BOARD) for image in images.values()])
+def boards(images: dict[str, np.ndarray]) -> dict[str, Board]:
+    return {name: find_board(image, BOARD) for name, image in images.items()}
+
+
+@pytest.fixture(scope="module")
+def camera(boards: dict[str, Board]) -> Camera:
+    return calibrate([*boards.values()])
 
 
 def test_several_views_give_the_lens(camera: Camera) -> None:
@@ -104,9 +109,9 @@ def test_several_views_give_the_lens(camera: Camera) -> None:
 
 
 @pytest.mark.parametrize("name", VIEWS)
-def test_outline_in_the_boards_frame(name: str, images: dict, camera: Camera) -> None:
+def test_outline_in_the_boards_frame(name: str, images: dict, boards: dict, camera: Camera) -> None:
     """With the board's corner known, position, size and shape must be right."""
-    found = trace(images[name], find_board(images[name], BOARD), camera, specimen(), CORNER)
+    found = trace(images[name], boards[name], camera, specimen(), CORNER)
     e = errors(found, cases.hanging())
     assert rms(e.all) < 0.04
     assert e.end < 0.08
@@ -119,8 +124,8 @@ def test_outline_in_the_boards_frame(name: str, images: dict, camera: Camera) ->
 
 
 @pytest.mark.parametrize("name", ["square on", "from the right"])
-def test_frame_from_the_clamp(name: str, images: dict, camera: Camera) -> None:
-    found = trace(images[name], find_board(images[name], BOARD), camera, specimen(), PhotoSettings())
+def test_frame_from_the_clamp(name: str, images: dict, boards: dict, camera: Camera) -> None:
+    found = trace(images[name], boards[name], camera, specimen(), PhotoSettings())
     assert np.array(found.origin) * 1e3 == pytest.approx([-12.0, -26.0], abs=0.1)
     e = errors(found, cases.hanging())
     assert rms(e.all) < 0.06
@@ -129,30 +134,32 @@ def test_frame_from_the_clamp(name: str, images: dict, camera: Camera) -> None:
 
 
 @pytest.mark.parametrize("corner", [(12.0, -26.0), (12.0, 76.0)])
-def test_a_corner_of_another_sign_or_place_is_said(images: dict, camera: Camera, corner: tuple) -> None:
+def test_a_corner_of_another_sign_or_place_is_said(
+    images: dict, boards: dict, camera: Camera, corner: tuple
+) -> None:
     """The beam would leave the clamp far from the frame's origin."""
     image = images["square on"]
     settings = PhotoSettings(board_corner_mm=corner)
     with pytest.raises(PhotoProblem, match=r"leaves the clamp at z = -?5\d.* mm of its frame, expected 0"):
-        trace(image, find_board(image, BOARD), camera, specimen(), settings)
+        trace(image, boards["square on"], camera, specimen(), settings)
 
 
-def test_what_photographs_share_is_stated_apart(images: dict, camera: Camera) -> None:
+def test_what_photographs_share_is_stated_apart(images: dict, boards: dict, camera: Camera) -> None:
     image = images["square on"]
     settings = PhotoSettings(board_corner_mm=(12.0, 26.0), board_corner_sd_mm=0.2, board_roll_sd_deg=0.3)
-    found = trace(image, find_board(image, BOARD), camera, specimen(), settings).outline
+    found = trace(image, boards["square on"], camera, specimen(), settings).outline
     assert (found.registration.shift, found.shared.shift) == (0.0, pytest.approx(2e-4))
     assert found.shared.roll == pytest.approx(np.radians(0.3))
     assert 0.0 < found.registration.roll < np.radians(0.05)
     assert found.registration.scale == 0.0 < found.shared.scale
-    clamp = trace(image, find_board(image, BOARD), camera, specimen(), PhotoSettings()).outline
+    clamp = trace(image, boards["square on"], camera, specimen(), PhotoSettings()).outline
     assert clamp.shared.shift == 0.0 < clamp.registration.shift
 
 
-def test_known_diameter_stands_in_for_the_focal_length(images: dict) -> None:
+def test_known_diameter_stands_in_for_the_focal_length(images: dict, boards: dict) -> None:
     """One perpendicular view does not determine the focal length, and so not the specimen's distance."""
     image = images["square on"]
-    board = find_board(image, BOARD)
+    board = boards["square on"]
     alone = calibrate([board])
     assert alone.focal_sd > 0.3
     known = trace(image, board, alone, specimen(section_sd=1e-5), CORNER)

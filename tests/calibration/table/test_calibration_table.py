@@ -33,14 +33,28 @@ def experiment(tmp_path):
 
 @pytest.fixture
 def fits(tmp_path, experiment):
+    return prepared(tmp_path / "made" / "fits", experiment)
+
+
+def prepared(folder, experiment):
     """Neo-Hookean fits of both mixtures, a failed Ogden fit of one, and no other laws."""
-    folder, digest = tmp_path / "made" / "fits", read(experiment).digest
+    digest = read(experiment).digest
     for material in SHIFTS:
         fit_file(folder, digest=digest, material=material, law="neo-hookean",
                  parameters=parameters("neo-hookean"))  # fmt: skip
     fit_file(folder, digest=digest, material="S0", law="ogden", parameters={}, status="no equilibrium",
              message="no shear modulus has an answer", shear_modulus=None)  # fmt: skip
     return folder
+
+
+@pytest.fixture(scope="module")
+def whole_table(tmp_path_factory):
+    """One run over all laws: its exit code, and the experiment, fits and output that it was given."""
+    folder = tmp_path_factory.mktemp("table")
+    experiment = displaced(folder / "bench", SHIFTS)
+    fits, out = prepared(folder / "made" / "fits", experiment), folder / "out"
+    found = RUNNER.invoke(app, [str(experiment), "--fits", str(fits), "--no-run", "--out", str(out)])
+    return found.exit_code, experiment, fits, out
 
 
 def table(path):
@@ -81,9 +95,8 @@ def test_figures_of_displaced_cylinders_beside_the_printed_ones(tmp_path, experi
     assert float(average["paper_dice"]) == pytest.approx((0.957 + 0.891) / 2)  # average of the same mixtures
 
 
-def test_paper_stands_beside(tmp_path, experiment, fits):
-    out = tmp_path / "out"
-    RUNNER.invoke(app, [str(experiment), "--fits", str(fits), "--no-run", "--out", str(out)])
+def test_paper_stands_beside(whole_table):
+    _, experiment, fits, out = whole_table
     rows = table(out / "table.csv")
     assert rows["ogden", "S1"]["paper_dice"] == "0.926"
     assert rows["st-venant-kirchhoff", "S0"]["paper_volume_difference_percent"] == "0.948"
@@ -94,10 +107,9 @@ def test_paper_stands_beside(tmp_path, experiment, fits):
     assert "(0.957)" in text
 
 
-def test_law_without_a_fit_has_a_row_that_says_so(tmp_path, experiment, fits):
-    out = tmp_path / "out"
-    found = RUNNER.invoke(app, [str(experiment), "--fits", str(fits), "--no-run", "--out", str(out)])
-    assert found.exit_code == 1
+def test_law_without_a_fit_has_a_row_that_says_so(whole_table):
+    exit_code, _, _, out = whole_table
+    assert exit_code == 1
     rows = table(out / "table.csv")
     assert rows["ogden", "S0"]["status"] == "no equilibrium"
     assert rows["ogden", "S0"]["message"] == "no shear modulus has an answer"
