@@ -24,7 +24,7 @@ def poked(law: str, *, element: Any = "default") -> tuple[tisim.Result, tisim.Re
                 direction=(float(np.sin(angle)), 0.0, -float(np.cos(angle))),
                 depth=depth,
                 frame_spacing=depth / 2,
-                refinement=0.6,
+                refinement=0.5,
                 element=element,
             )
         )
