@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from learn.data._format import GRID, LEVELS
 from learn.data.setup import Setup
 from learn.data.store import Clock, Store
 from learn.errors import InputError
@@ -25,6 +26,14 @@ TABLES = "dataset.npz"
 _ABOUT = "about"  # JSON: format, location, attributes, radii of the indenter
 _WHOLE = {"location", "attributes", "setups", "clock", "has_fields"}  # fields of `Store` that are no arrays
 _NAMES = [field.name for field in dataclasses.fields(Store) if field.name not in _WHOLE]
+# of each array: NumPy's letter of its type, and the shape of a row, of pokes, frames or interiors
+_POKE = {
+    "done": ("b", ()), "shape": ("i", ()), "softness": ("i", ()), "geometry": ("i", ()), "modulus": ("f", ()),
+    "direction": ("f", (3,)), "path_start": ("f", (3,)), "frame_start": ("i", ()), "frame_count": ("i", ()),
+    "solved_as": ("i", ()),
+}  # fmt: skip
+_FRAME = {"depth": ("f", ()), "frame_poke": ("i", ()), "rod_force": ("f", (3,))}
+_INTERIOR = {"profile": ("u", (GRID * GRID, LEVELS)), "setup_index": ("i", ())}
 _OF_SETUP = ("points", "normals", "level_depth")
 _OF_CLOCK = [field.name for field in dataclasses.fields(Clock)]
 
@@ -63,6 +72,7 @@ def load_tables(path: Path | str) -> Store:
         if about["format"] != FORMAT:
             raise InputError(f"{path}: expected the tables of a dataset in format {FORMAT}")
         clock = {name: arrays[f"clock_{name}"] for name in _OF_CLOCK} if "clock_time" in arrays else None
+        _check(arrays)
         setups = [dict(zip(_OF_SETUP, rows, strict=True)) for rows in _rows_of_setups(arrays)]
         return Store(
             location=about["location"],
@@ -74,9 +84,22 @@ def load_tables(path: Path | str) -> Store:
             has_fields=False,
             **{name: arrays[name] for name in _NAMES},
         )
-    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
+    except (OSError, ValueError, KeyError, TypeError, IndexError, zipfile.BadZipFile, EOFError) as error:
         text = " ".join(str(error).split())[:120]
         raise InputError(f"{path}: not readable as the tables of a dataset ({text})") from None
+
+
+def _check(arrays: dict[str, NDArray[Any]]) -> None:
+    """ValueError if types, shapes or indices of the arrays do not agree."""
+    for rows in (_POKE, _FRAME, _INTERIOR):
+        count = len(arrays[next(iter(rows))])
+        for name, (kind, row) in rows.items():
+            found = arrays[name]
+            if found.dtype.kind != kind or found.shape != (count, *row):
+                raise ValueError(f"{name}: {found.dtype} of shape {found.shape}, expected {count} rows {row}")
+    for name, of in (("geometry", "profile"), ("frame_poke", "done"), ("setup_index", "setup_points")):
+        if arrays[name].size and not 0 <= arrays[name].min() <= arrays[name].max() < len(arrays[of]):
+            raise ValueError(f"{name}: points at a row that {of} has not")
 
 
 def _rows_of_setups(arrays: dict[str, NDArray[Any]]) -> Any:

@@ -131,12 +131,29 @@ def _without(name: str) -> Callable[[Path], None]:
     return change
 
 
+def _changed(name: str, change: Callable[[Any], Any]) -> Callable[[Path], None]:
+    def write(path: Path) -> None:
+        with np.load(path) as file:
+            arrays = {key: file[key] for key in file.files}
+        buffer = io.BytesIO()
+        np.savez(buffer, **{**arrays, name: change(arrays[name])})
+        path.write_bytes(buffer.getvalue())
+
+    return write
+
+
 DAMAGED: dict[str, Callable[[Path], None]] = {
     "cut short": lambda path: path.write_bytes(path.read_bytes()[:5000]),
     "empty": lambda path: path.write_bytes(b""),
     "another file": lambda path: path.write_text("tables"),
     "an array missing": _without("profile"),
     "no description": _without("about"),
+    "fewer interiors": _changed("profile", lambda a: a[:1]),
+    "fewer levels": _changed("profile", lambda a: a[..., :9]),
+    "fewer pokes": _changed("softness", lambda a: a[:1]),
+    "text for numbers": _changed("depth", lambda a: a.astype("U8")),
+    "a frame of no poke": _changed("frame_poke", lambda a: a + 1000),
+    "a block that is not there": _changed("setup_index", lambda a: a + 7),
 }
 
 
