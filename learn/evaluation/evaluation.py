@@ -15,17 +15,15 @@ from learn.data import MemoryDataset, Split, Store
 from learn.data.clouds import SurfaceField, scattered
 from learn.data.loaders import without_fields
 from learn.errors import InputError
+from learn.evaluation.cross_conformal import Predicted, across_folds, inside_alone
 from learn.evaluation.ensembles import ensembles, names_of
 from learn.evaluation.intervals import (
     LEAST_POKES,
     Coverage,
     Intervals,
-    Predicted,
-    across_folds,
     coverage,
     fit_intervals,
     force_fault,
-    inside_alone,
     rank_correlation,
     too_few,
 )

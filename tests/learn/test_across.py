@@ -12,13 +12,11 @@ import numpy as np
 import pytest
 
 from learn.errors import InputError
+from learn.evaluation.cross_conformal import Predicted, across_folds, inside_alone
 from learn.evaluation.intervals import (
-    Predicted,
-    across_folds,
     coverage,
     fit_intervals,
     force_fault,
-    inside_alone,
 )
 from learn.evaluation.intervals_file import load_intervals, replaced_text, save_intervals
 from learn.metrics import Predictions, join_predictions
