@@ -342,6 +342,7 @@ def _mesh(data: Dataset, index: int) -> Mesh:
         site=(float(site[0]), float(site[1])),
         direction=(float(direction[0]), float(direction[1]), float(direction[2])),
         rod=_rod(data),
+        friction=recipe["friction"],
         refinement=recipe["refinement"],
     )
 

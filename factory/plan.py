@@ -30,7 +30,7 @@ from tisim import Inclusion, Material, Poke, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
-from tisim.problems.indentation.kind import CONTACT, ELEMENT
+from tisim.problems.indentation.kind import ELEMENT, contact_version
 
 log = logging.getLogger(__name__)
 
@@ -208,7 +208,7 @@ def make_plan(
         # labels depend on the element type, the mesh and the contact
         "element": ELEMENT,
         "mesh_layout": LAYOUT,
-        "contact": CONTACT,
+        "contact": contact_version(recipe.friction),
         # absent if each poke has its own solve, so that such stores stay as they were
         **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
         **_added_code(laws, inclusions),

@@ -25,6 +25,7 @@ from benchmarks.references.poke import MU, PENALTY, Case, estimate, poke
 FILE = Path(__file__).with_suffix(".json")
 DEPTHS = (0.001, 0.002, 0.005, 0.010, 0.015, 0.020)
 RATIOS, FRICTIONS = (20.0, 300.0), (0.0, 0.3, 0.6)
+BETWEEN = (0.15, 0.45)  # coefficients of friction of two more cases
 RUNS = ((1, PENALTY), (1, 1e10), (2, PENALTY))  # level, contact stiffness [Pa/m]
 
 
@@ -35,6 +36,8 @@ def cases() -> dict[str, tuple[Case, float]]:
     for tip, law, ratio, friction in every:
         name = f"{tip} {law} K/mu {ratio:g} friction {friction:g}"
         out[name] = Case(tip=tip, law=law, bulk=ratio * MU, depths=DEPTHS), friction
+    for friction in BETWEEN:
+        out[f"flat neo_hookean K/mu 20 friction {friction:g}"] = Case(depths=DEPTHS), friction
     return out
 
 

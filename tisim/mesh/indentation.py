@@ -17,6 +17,10 @@ Floats = NDArray[np.float64]
 
 # Version of the mesh, raised when the mesh of a poke changes; a dataset has one version only.
 LAYOUT = 2
+# Coefficient of friction from which the surface sticks to most of the rod's tip.
+STICKS = 0.6
+# Exponent, less 1, of the positions of the rings beside the rod where the surface slides.
+CLOSER = 0.32
 STEEPEST = np.radians(45.5)
 # Least distance of an upright rod's axis from the sides, in rod radii: the outermost fine ring and a cell.
 CLEARANCE = 1.8
@@ -54,6 +58,7 @@ def poke_mesh(
     site: tuple[float, float],
     direction: Vector = (0.0, 0.0, -1.0),
     rod: Rod,
+    friction: float = STICKS,
     refinement: float = 1.0,
     kind: ElementKind = "hex20",
 ) -> Mesh:
@@ -71,6 +76,8 @@ def poke_mesh(
     direction : (float, float, float)
         Direction of the push, up to 45 degrees from -z.
     rod : Rod
+    friction : float
+        Coefficient of friction: the rings beside the rod are closer to it where the surface slides (`sliding`).
     refinement : float
         Factor by which spacings become smaller, 0.5 to 6; with 1 there are about 2,600 nodes without an
         inclusion (3,500 of hex8).
@@ -92,7 +99,15 @@ def poke_mesh(
     if kind not in ("hex20", "hex8", "tet4", "tet10"):
         raise MeshError(f"poke mesh: expected kind hex20, hex8, tet4 or tet10, got {kind!r}")
     size = _checked_size(block)
-    grids = _Grids(size=size, site=site, direction=direction, rod=rod, refinement=refinement, kind=kind)
+    grids = _Grids(
+        size=size,
+        site=site,
+        direction=direction,
+        rod=rod,
+        friction=friction,
+        refinement=refinement,
+        kind=kind,
+    )
     if block.inclusion is None:
         grid = grids.make(None)
         return extrude(points=grid.points, cells=grid.cells, size=size, refinement=refinement, kind=kind)
@@ -129,6 +144,16 @@ def poke_mesh(
         f"inclusion: no grid around the poke site {tuple(site)} meets its outline without elements that turn "
         "over; try a larger refinement, or an inclusion that is wider"
     )
+
+
+def sliding(friction: float) -> float:
+    """How much of the surface slides round the rod's edge while the rest sticks to its tip, 0 to 1.
+
+    4 t (1 - t) with t = friction / STICKS: 0 without friction and where the surface sticks. In between the
+    force is the more sensitive to the elements and the contact at the edge (studies/depth).
+    """
+    t = min(friction / STICKS, 1.0)
+    return 4.0 * t * (1.0 - t)
 
 
 def check_indentation(
@@ -203,6 +228,7 @@ class _Grids:
         site: tuple[float, float],
         direction: Vector,
         rod: Rod,
+        friction: float = STICKS,
         refinement: float,
         kind: ElementKind = "hex8",
     ) -> None:
@@ -229,6 +255,9 @@ class _Grids:
         flat = rod.radius - rod.edge_radius if rod.tip == "flat" else 0.0
         self.flat = float(np.clip(flat, 0.5 * rod.radius, 0.8 * rod.radius))
         self.rings = np.linspace(self.flat, 1.4 * rod.radius, max(3, round(4 * refinement)) + 1)[1:]
+        beside = (self.rings - rod.radius) / (0.4 * rod.radius)
+        moved = rod.radius * (1.0 + 0.4 * np.maximum(beside, 0.0) ** (1.0 + CLOSER * sliding(friction)))
+        self.rings = np.where(beside > 0.0, moved, self.rings)
         self.azimuth = float(np.arctan2(push[1], push[0]))
         self.stretch = 1.0 / float(np.cos(tilt))
         self.quadratic = kind == "hex20"

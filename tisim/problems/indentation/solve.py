@@ -63,7 +63,7 @@ def solve_poke(scene: Poke, *, on_step: OnStep = skip) -> Result:
     """
     mesh_start = time.process_time()
     mesh = scene.mesh or poke_mesh(
-        block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod,
+        block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod, friction=scene.friction,
         refinement=scene.refinement, kind=ELEMENT if scene.element == "default" else scene.element,
     )  # fmt: skip
     discretisation = Discretisation.build(mesh, mesh.node_sets["base"])

@@ -15,6 +15,7 @@ from tisim.discretisation.quadrature import TetrahedralParts, facet_areas
 from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
+from tisim.mesh.indentation import sliding
 from tisim.problems.indentation.far_field import FarField
 from tisim.problems.indentation.first_touch import FirstTouch, near_facets
 from tisim.problems.indentation.turning import axis_at, rotation
@@ -25,6 +26,9 @@ Array = NDArray[np.float64]
 # Contact stiffness in units of shear modulus over edge radius: the penetration under a pressure of ten
 # shear moduli is a twentieth of the edge radius. With twice the stiffness, stick and slip are more abrupt.
 NORMAL_STIFFNESS = 200.0
+# Factor of that stiffness, less 1, where the surface slides round the rod's edge (`sliding`): its penetration
+# is deepest there.
+STIFFER_SLIDING = 3.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
@@ -131,8 +135,9 @@ class PokeSystem:
         points = self._area.shape
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
+        normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
         self._law = np.array(
-            [NORMAL_STIFFNESS * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
+            [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
         )
         self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
         self._skew = np.zeros((*points, 9))
