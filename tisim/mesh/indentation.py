@@ -20,7 +20,7 @@ LAYOUT = 2
 # Coefficient of friction from which the surface sticks to most of the rod's tip.
 STICKS = 0.6
 # Exponent, less 1, of the positions of the rings beside the rod where the surface slides.
-CLOSER = 0.32
+CLOSER = 0.74
 STEEPEST = np.radians(45.5)
 # Least distance of an upright rod's axis from the sides, in rod radii: the outermost fine ring and a cell.
 CLEARANCE = 1.8
@@ -77,7 +77,7 @@ def poke_mesh(
         Direction of the push, up to 45 degrees from -z.
     rod : Rod
     friction : float
-        Coefficient of friction: the rings beside the rod are closer to it where the surface slides (`sliding`).
+        Coefficient of friction; the rings beside the rod are closer to it where the surface slides.
     refinement : float
         Factor by which spacings become smaller, 0.5 to 6; with 1 there are about 2,600 nodes without an
         inclusion (3,500 of hex8).
@@ -255,9 +255,11 @@ class _Grids:
         flat = rod.radius - rod.edge_radius if rod.tip == "flat" else 0.0
         self.flat = float(np.clip(flat, 0.5 * rod.radius, 0.8 * rod.radius))
         self.rings = np.linspace(self.flat, 1.4 * rod.radius, max(3, round(4 * refinement)) + 1)[1:]
-        beside = (self.rings - rod.radius) / (0.4 * rod.radius)
-        moved = rod.radius * (1.0 + 0.4 * np.maximum(beside, 0.0) ** (1.0 + CLOSER * sliding(friction)))
-        self.rings = np.where(beside > 0.0, moved, self.rings)
+        slides = sliding(friction)
+        if slides > 0.0:
+            beside = np.maximum(self.rings / rod.radius - 1.0, 0.0) / 0.4
+            closer = rod.radius * (1.0 + 0.4 * beside ** (1.0 + CLOSER * slides))
+            self.rings = np.where(beside > 0.0, closer, self.rings)
         self.azimuth = float(np.arctan2(push[1], push[0]))
         self.stretch = 1.0 / float(np.cos(tilt))
         self.quadratic = kind == "hex20"
