@@ -70,4 +70,5 @@ def test_force_where_the_surface_slides(friction: float, depths: tuple[int, ...]
     at = [int(np.argmin(abs(result.load - 1e-3 * depth))) for depth in depths]
     known = FORCES[f"flat neo_hookean K/mu 20 friction {friction:g}"]
     expected = [known[str(depth)]["force"] for depth in depths]
+    assert result.rod_force is not None
     assert result.rod_force[at, 2] == pytest.approx(expected, rel=0.02)
