@@ -29,9 +29,10 @@ from rich.table import Table
 
 import tisim
 from benchmarks.whole import whole_file
+from factory._planned import PlannedPoke
 from factory._record import first_touch
 from factory._sampling import SIZE, grid_points, interpolation
-from factory.plan import PlannedPoke, make_plan
+from factory.plan import make_plan
 from factory.recipe import load_recipe
 
 Array = NDArray[np.float64]
