@@ -253,7 +253,7 @@ def noise_free_fits(kind: str, folder: Path, truth: str) -> dict[str, float]:
     truth : str
         The hidden effect; fitted even where it does not look promising.
     """
-    from calibration.diagnosis.engine.explanation import explain
+    from calibration.diagnosis.engine.explain import explain
     from calibration.diagnosis.engine.null import Null
     from calibration.diagnosis.engine.screening import screen
     from calibration.diagnosis.engine.search import fit_baseline

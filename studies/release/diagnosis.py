@@ -20,7 +20,7 @@ import numpy as np
 from calibration.diagnosis import Diagnosis, diagnose, model_of
 from calibration.diagnosis.drawing.release import DrawnRelease, drawn
 from calibration.diagnosis.engine.fitting import Fit
-from calibration.diagnosis.engine.null import LackOfFit
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.measurements.release.model import ReleaseModel

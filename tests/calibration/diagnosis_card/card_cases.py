@@ -17,7 +17,8 @@ from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut
-from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
+from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.screening import screen
 from calibration.diagnosis.engine.verdict import Numbers, Subject
 from calibration.experiment import Experiment, read

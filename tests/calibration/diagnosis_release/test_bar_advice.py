@@ -16,9 +16,11 @@ from release_models import bar_model
 from benchmarks.blind.release import Truth, write_bars
 from calibration.diagnosis.effects.release import EFFECTS
 from calibration.diagnosis.engine.advice import Advice, advice, advise
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit, fit
-from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
+from calibration.diagnosis.engine.null import Null
 from calibration.experiment import read
 from calibration.measurements._design import Gauge
 from calibration.measurements._effect import Candidate
