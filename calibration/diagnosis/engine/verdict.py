@@ -240,7 +240,17 @@ class Diagnosis:
 
     def sentence(self) -> str:
         """The verdict in sentences (`sentences.sentence`)."""
-        return sentence(self)
+        return sentence(
+            self.finding,
+            self.chosen,
+            self.effects,
+            unit=self.unit,
+            share=self.share,
+            shares=self.shares,
+            held_out=self.held_out,
+            nearest=self.nearest,
+            remainder=self.remainder,
+        )
 
 
 def _interval(share: Interval) -> dict[str, float | None]:
