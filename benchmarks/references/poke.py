@@ -32,6 +32,7 @@ from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")
@@ -160,7 +161,7 @@ def write(found: dict[str, Any]) -> None:
         "forces": "friction: level: depth: what was computed",
     }
     text = json.dumps({"about": about, "values": estimate(found), "forces": found}, indent=1)
-    FILE.write_text(text + "\n")
+    write_whole(FILE, text + "\n")
 
 
 def main() -> None:
