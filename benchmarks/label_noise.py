@@ -94,7 +94,7 @@ def compared(poke: PlannedPoke, one: Solved, other: Solved) -> Array:
 
 
 def chosen(pokes: Sequence[PlannedPoke], count: int) -> list[PlannedPoke]:
-    """So many, evenly through the plan (which is in order of shape, softness, site)."""
+    """`count` pokes at even steps through the plan, which is ordered by shape, level and contact point."""
     at = np.unique(np.linspace(0, len(pokes) - 1, count).round().astype(int))
     return [pokes[i] for i in at]
 

@@ -297,7 +297,7 @@ class Screening:
 
 
 def screen_beams(folder: Path) -> Screening:
-    """How large the diagnosis sees each candidate, to first order."""
+    """First-order amplitude of each candidate, as the diagnosis screens it."""
     import numpy as np
 
     from calibration.diagnosis.engine.screening import screen
@@ -341,7 +341,7 @@ def fit_command(
 
 
 def fit_in_process(folder: Path, out: Path, law: str, options: Iterable[str] = ()) -> None:
-    """As `fit_command`, in this process: what it has simulated and compiled is there for the next fit."""
+    """Run `fit_command` in this process, so that the next fit reuses its compiled kernels and solutions."""
     from calibration.fit import app
 
     said = io.StringIO()

@@ -50,7 +50,7 @@ def corners(knots: tuple[float, ...], counts: tuple[int, ...], level: int) -> Ar
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is poked by what, and how deep; moduli in Pa, depths in m.
+    """One indentation: indenter, law and depths; moduli in Pa, depths in m.
 
     tip: "flat", with the edge radius above, or "hemisphere". law: "neo_hookean" or "ogden", alpha 4.
     """
@@ -61,7 +61,7 @@ class Case:
     depths: tuple[float, ...] = DEPTHS
 
     def mixed_law(self) -> Any:
-        """As FElupe's `SolidBody` takes it."""
+        """The law in mixed form, for FElupe's `SolidBody`."""
         if self.law == "neo_hookean":
             return mixed_law(self.law, self.bulk, mu=MU)
         return mixed_law(self.law, self.bulk, mu=(MU / 2,), alpha=(4.0,))

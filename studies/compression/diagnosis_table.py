@@ -110,7 +110,7 @@ def left_over(model: CompressionModel, fit: Fit) -> dict[str, tuple[Array, Array
 
 
 def draw(found: Diagnosis, model: CompressionModel) -> None:
-    """What is left of three records along the strain."""
+    """Residuals of three records along the strain."""
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 

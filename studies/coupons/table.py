@@ -144,7 +144,7 @@ def one_mode() -> str:
 
 
 def parameters() -> str:
-    """What the fits of `all_modes` found, and what decided it."""
+    """Parameters by the fits of `all_modes`, with what determines them."""
     rows = []
     for name in RUBBERS:
         for law, terms in LAWS:

@@ -217,7 +217,7 @@ def interval(share: dict[str, Any] | None) -> str:
 
 
 def agrees(one: Set, named: set[str], sets: Sequence[set[str]]) -> str:
-    """Whether what is named is what an expert would say. sets: that the data cannot tell apart."""
+    """Agreement of the named causes with an expert's. sets : sets of causes that the data cannot separate."""
     if not named:
         return "nothing named"
     if named & one.against:

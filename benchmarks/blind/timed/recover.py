@@ -69,7 +69,7 @@ class Interval:
 
     @property
     def holds(self) -> bool:
-        """Whether the truth lies in the interval."""
+        """True if the interval contains the truth."""
         return self.low is not None and self.high is not None and self.low <= self.truth <= self.high
 
 

@@ -60,8 +60,8 @@ def diagnosis(
     baseline = _fit(u + 0.1, {})
     explanations: tuple[Explanation, ...] = ()
     if causes:
-        departure = LackOfFit(p_value=0.5, each={}, worst="everything")
-        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, lack_of_fit=departure),)
+        lack_of_fit = LackOfFit(p_value=0.5, each={}, worst="everything")
+        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, lack_of_fit=lack_of_fit),)
     finding = Finding(
         verdict=verdict,  # type: ignore[arg-type]
         baseline=baseline,

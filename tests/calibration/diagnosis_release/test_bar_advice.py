@@ -90,8 +90,8 @@ def supposed(model: ReleaseModel, base: State, name: str, amplitude: float) -> E
     """Explanation by a cause of this amplitude, without a fit to the data."""
     c = in_all(model, name)
     linear = model.linearise(replace(base, amplitudes={c: amplitude}), (c,))
-    departure = LackOfFit(p_value=0.5, each={}, worst="none")
-    return Explanation(fit=Fit(linear=linear, converged=True), cost=0.0, lack_of_fit=departure)
+    lack_of_fit = LackOfFit(p_value=0.5, each={}, worst="none")
+    return Explanation(fit=Fit(linear=linear, converged=True), cost=0.0, lack_of_fit=lack_of_fit)
 
 
 def test_what_an_experiment_promises_is_what_it_gives() -> None:
