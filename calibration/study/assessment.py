@@ -32,8 +32,8 @@ NAMES = {
 }
 
 
-def spoken(name: str) -> str:
-    """A search coordinate's name for people; terms of a series keep their number."""
+def display_name(name: str) -> str:
+    """Name of a search coordinate in texts; terms of a series keep their number."""
     for known, word in NAMES.items():
         if name == known:
             return word
@@ -52,7 +52,7 @@ def undetermined_terms(law: str, terms: int, estimates: Iterable[Estimate]) -> s
         return ""
     coordinates = parametrisation(law, terms=terms).coordinates
     own = {c.name for c in coordinates if c.name[-1].isdigit()}  # of a term: shear_modulus_2
-    unknown = [spoken(e.name) for e in estimates if e.seen == "not identified" and e.name in own]
+    unknown = [display_name(e.name) for e in estimates if e.seen == "not identified" and e.name in own]
     if not unknown:
         return ""
     return (
@@ -112,15 +112,16 @@ def constants_lacking(
 ) -> tuple[str, ...]:
     """A phrase for each constant that is driven to a bound or away from its prior."""
     bounds, away = at_bounds(parametrisation, u, gains), off_prior(parametrisation, u)
-    phrases = [f"{spoken(n)} ends at its bound {value:g}" for n, value in bounds.items()]
+    phrases = [f"{display_name(n)} ends at its bound {value:g}" for n, value in bounds.items()]
     for name, distance in away.items():
         if name not in bounds:
             i = parametrisation.names.index(name)
             c = parametrisation.coordinates[i]
             centre, _ = parametrisation.prior()
+            value = c.value(float(np.asarray(u, float)[i]))
             phrases.append(
-                f"{spoken(name)} {c.value(float(np.asarray(u, float)[i])):.3g} lies {distance:.1f} standard"
-                f" deviations from its prior's {c.value(centre[i]):.3g}"
+                f"{display_name(name)} {value:.3g} lies {distance:.1f} standard deviations from its prior's"
+                f" {c.value(centre[i]):.3g}"
             )
     return tuple(phrases)
 
