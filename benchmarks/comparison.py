@@ -83,7 +83,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Line:
-    """What a program made of a beam. end: displacement at the middle of the end face [m], (3,)."""
+    """Result of one program for a beam. end : displacement at the middle of the end face [m], (3,)."""
 
     program: str
     how: str
@@ -172,7 +172,7 @@ def felupe(case: Case) -> Iterator[Line]:
 
 
 def quadratic(case: Case) -> tisim.Mesh:
-    """Of the peers: whole beam, 10-node tetrahedra, as fine as the exported scenes."""
+    """Mesh of the other programs: whole beam, 10-node tetrahedra, as fine as the exported scenes."""
     return beam_mesh(
         length=0.1, section=case.section, supports="clamped-free", kind="tet10", axial_element_size=0.007,
         radial_elements=2,

@@ -27,7 +27,7 @@ SLOW = tisim.Material(
 
 
 def traction(result: tisim.Result, name: str) -> np.ndarray:
-    """Of the nodes' first Piola-Kirchhoff stress on the facets of a node set, (3,) [N]."""
+    """Resultant [N], shape (3,), of the nodal first Piola-Kirchhoff stress over the facets of a node set."""
     mesh = result.mesh
     surface = boundary_facets(mesh.kind, mesh.elements)
     face = surface[np.isin(surface, mesh.node_sets[name]).all(axis=1)]

@@ -29,9 +29,10 @@ from rich.table import Table
 
 import tisim
 from benchmarks.whole import whole_file
+from factory._planned import PlannedPoke
 from factory._record import first_touch
 from factory._sampling import SIZE, grid_points, interpolation
-from factory.plan import PlannedPoke, make_plan
+from factory.plan import make_plan
 from factory.recipe import load_recipe
 
 Array = NDArray[np.float64]
@@ -93,7 +94,7 @@ def compared(poke: PlannedPoke, one: Solved, other: Solved) -> Array:
 
 
 def chosen(pokes: Sequence[PlannedPoke], count: int) -> list[PlannedPoke]:
-    """So many, evenly through the plan (which is in order of shape, softness, site)."""
+    """`count` pokes at even steps through the plan, which is ordered by shape, level and contact point."""
     at = np.unique(np.linspace(0, len(pokes) - 1, count).round().astype(int))
     return [pokes[i] for i in at]
 

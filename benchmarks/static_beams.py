@@ -81,7 +81,7 @@ def error(case: str, law: str, modulus: float, rest: Array, displacement: Array)
 
 
 def our_error(case: str, law: str, modulus: float, result: tisim.Result) -> float:
-    """As `error`, for a result of ours; an unsolved beam has an infinite one."""
+    """Error of a result of tisim, as `error`; infinite for an unsolved beam."""
     if not result.ok:
         return float("inf")
     rest = result.mesh.nodes

@@ -182,7 +182,7 @@ def law_table(results: Sequence[Calibration]) -> Table:
 
     Columns of photographed beams are left out where there are none; held out is the worst of them.
     """
-    from calibration.study.assessment import spoken
+    from calibration.study.assessment import display_name
 
     beams = any(r.rms is not None or r.held_out for r in results)
     table = Table(title="Calibration", box=SIMPLE, pad_edge=False, collapse_padding=True)
@@ -205,6 +205,6 @@ def law_table(results: Sequence[Calibration]) -> Table:
             cells.append("-" if r.rms is None else f"{r.rms * 1e3:.3f}")
             cells.append(f"{max(h.rms for h in r.held_out) * 1e3:.2f}" if r.held_out else "-")
         unseen = [e for e in r.estimates if e.seen != "identified"]
-        words = [f"{spoken(e.name)}{' (held)' if e.seen == 'held' else ''}" for e in unseen]
+        words = [f"{display_name(e.name)}{' (held)' if e.seen == 'held' else ''}" for e in unseen]
         table.add_row(*cells, ", ".join(words))
     return table

@@ -1,4 +1,4 @@
-"""What is asked of a fit beside its experiment, with the defaults of `calibration.fit` and of its command.
+"""Options of a fit in addition to its experiment, with the defaults of `calibration.fit` and of its command.
 
 Apart from `calibration.fit_plan`, since the command shows the defaults without loading numpy.
 """

@@ -1,11 +1,13 @@
 from ._build import BuildProgress, Built, build_dataset
 from ._checks import Verification, verify_dataset
 from ._errors import InputError
+from ._planned import PlannedPoke
+from ._poke_data import PokeData
 from ._store import DamagedError
 from ._summary import Summary, summarise
 from .materials import Card, load_card, material_of
-from .plan import Plan, PlannedPoke, make_plan
-from .reader import Dataset, PokeData, open_dataset
+from .plan import Plan, make_plan
+from .reader import Dataset, open_dataset
 from .recipe import Recipe, Shape, load_recipe, recipe_names
 
 __all__ = [

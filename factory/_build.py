@@ -15,11 +15,12 @@ from factory._cluster import CLUSTER_TIMEOUT, run_cluster
 from factory._errors import InputError, describe_os_error
 from factory._execution import SIMULATOR
 from factory._local import run_local
+from factory._planned import PlannedPoke
 from factory._record import Outcome
 from factory._similar import arrays_of, in_proportion
 from factory._staging import DamagedResultError, Staging, set_damaged_aside
 from factory._store import DamagedError, is_store, root_attributes
-from factory.plan import Plan, PlannedPoke, changes
+from factory.plan import Plan, changes
 
 log = logging.getLogger(__name__)
 _ROUNDS = 3  # attempts to write the store; results found damaged are simulated again in between

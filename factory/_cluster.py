@@ -14,8 +14,8 @@ from typing import Any
 
 from factory._errors import InputError, one_line
 from factory._execution import ERROR_LENGTH, run_poke, sendable, worker_facts
+from factory._planned import PlannedPoke
 from factory._record import Outcome
-from factory.plan import PlannedPoke
 from tisim.parallel.threads import SAME_BYTES
 
 log = logging.getLogger(__name__)

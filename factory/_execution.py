@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from factory._errors import InputError
+from factory._planned import PlannedPoke
 from factory._record import Outcome, encode, record
-from factory.plan import PlannedPoke, versions
+from factory.plan import versions
 from tisim.parallel.extensions import Extension, adopt, needed
 
 SIMULATOR = "tisim:simulate"

@@ -12,10 +12,11 @@ from matplotlib.patches import Polygon, Rectangle
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
 
+from factory._poke_data import PokeData
 from factory._record import Trace
 from factory._sampling import grid_points
 from factory.plan import Plan
-from factory.reader import Dataset, PokeData
+from factory.reader import Dataset
 from tisim.io.whole import whole_file
 
 _INCLUSION: dict[str, Any] = {"facecolor": "#fdae6b", "edgecolor": "#e6550d", "alpha": 0.25}

@@ -20,8 +20,8 @@ from multiprocessing.process import BaseProcess
 
 from factory._errors import InputError
 from factory._execution import load_simulator, run_poke, sendable
+from factory._planned import PlannedPoke
 from factory._record import Outcome
-from factory.plan import PlannedPoke
 from tisim.parallel.extensions import Extension
 from tisim.parallel.threads import SAME_BYTES
 

@@ -6,18 +6,16 @@ import io
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from factory._course import deepest, states_at
+from factory._planned import PlannedPoke
 from factory._sampling import SIZE, grid_points, interpolation, surface_triangles
 from tisim.result import Result, Status
 from tisim.scene import Poke
-
-if TYPE_CHECKING:
-    from factory.plan import PlannedPoke
 
 STATUSES = tuple(status for status in Status if status is not Status.NOT_MESHED)  # of stored pokes
 COUNTERS = ("steps", "newton_iterations", "factorisations", "linear_iterations", "step_cuts")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim import Inclusion
-from tisim.mesh import triangles
+from tisim.mesh import facet_shape_functions, triangles
 
 SIZE = 32  # grid points a side
 LEVELS = 128  # of a stiffness profile
@@ -87,12 +87,13 @@ def interpolation(
     if quad.any():
         st, reached = _inverse_bilinear(xy[facet[quad]], target[point[quad]])
         outside[quad] = np.where(reached, (np.abs(st) - 1).max(axis=1), np.inf)
-        weights[quad] = _serendipity(st) if quadratic else _bilinear(st)
+        weights[quad] = facet_shape_functions(weights.shape[1], st)[0]
     if not quad.all():
         tri = ~quad
         bary = _barycentric(xy[facet[tri]][:, :3], target[point[tri]])
         outside[tri] = (-bary).max(axis=1)
-        weights[tri] = _quadratic(bary) if facets.shape[1] == 6 else np.pad(bary, ((0, 0), (0, 1)))
+        n = 6 if facets.shape[1] == 6 else 3  # a triangle among quadrangles has no fourth node
+        weights[tri, :n] = facet_shape_functions(n, bary[:, 1:])[0]
     order = np.lexsort((facet, outside, point))
     found, first = np.unique(point[order], return_index=True)
     best = order[first]
@@ -117,22 +118,6 @@ def _corners(facets: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.b
     return corners, ~repeated.any(axis=1)
 
 
-def _bilinear(st: NDArray[np.float64]) -> NDArray[np.float64]:
-    s, t = st[:, 0], st[:, 1]
-    return np.stack([(1 - s) * (1 - t), (1 + s) * (1 - t), (1 + s) * (1 + t), (1 - s) * (1 + t)], axis=1) / 4
-
-
-def _serendipity(st: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Eight-node quadrangle, middle nodes after the corners: 4=(0,1) ... 7=(3,0)."""
-    s, t = st[:, 0], st[:, 1]
-    corners = [
-        (1 + a * s) * (1 + b * t) * (a * s + b * t - 1) / 4 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    ]
-    along_s = [(1 - s * s) * (1 + b * t) / 2 for b in (-1, 1)]
-    along_t = [(1 - t * t) * (1 + a * s) / 2 for a in (-1, 1)]
-    return np.stack([*corners, along_s[0], along_t[1], along_s[1], along_t[0]], axis=1)
-
-
 def _inverse_bilinear(
     xy: NDArray[np.float64], target: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -143,7 +128,7 @@ def _inverse_bilinear(
     st = np.zeros_like(target)
     for _ in range(25):
         s, t = st[:, :1], st[:, 1:]
-        residual = np.einsum("mk,mkc->mc", _bilinear(st), xy) - target
+        residual = np.einsum("mk,mkc->mc", facet_shape_functions(4, st)[0], xy) - target
         ds = ((1 - t) * (xy[:, 1] - xy[:, 0]) + (1 + t) * (xy[:, 2] - xy[:, 3])) / 4
         dt = ((1 - s) * (xy[:, 3] - xy[:, 0]) + (1 + s) * (xy[:, 2] - xy[:, 1])) / 4
         det = ds[:, 0] * dt[:, 1] - ds[:, 1] * dt[:, 0]
@@ -152,7 +137,7 @@ def _inverse_bilinear(
         step_t = (residual[:, 1] * ds[:, 0] - residual[:, 0] * ds[:, 1]) / det
         # targets far away, which pass the bounding-box test, may diverge: they are not inside
         st = np.clip(st - np.stack([step_s, step_t], axis=1), -3, 3)
-    miss = np.abs(np.einsum("mk,mkc->mc", _bilinear(st), xy) - target).max(axis=1)
+    miss = np.abs(np.einsum("mk,mkc->mc", facet_shape_functions(4, st)[0], xy) - target).max(axis=1)
     return st, miss <= 1e-9 * np.ptp(xy, axis=1).max(axis=1)
 
 
@@ -163,14 +148,6 @@ def _barycentric(xy: NDArray[np.float64], target: NDArray[np.float64]) -> NDArra
     l1 = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / det
     l2 = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / det
     return np.stack([1 - l1 - l2, l1, l2], axis=1)
-
-
-def _quadratic(bary: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Six-node triangle with mid-side nodes 3=(0,1), 4=(1,2), 5=(2,0) in the middle of straight edges."""
-    a, b, c = bary.T
-    return np.stack(
-        [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1
-    )
 
 
 def surface_triangles(facets: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int32]]:

@@ -9,15 +9,12 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from factory._planned import PlannedPoke
 from factory._record import Arrays, Outcome, encode
 from tisim import Material, Poke, laws
-
-if TYPE_CHECKING:
-    from factory.plan import PlannedPoke
 
 # relative tolerance on moduli: cards hold five digits, and the error of the simulated force is larger
 ROUNDED = 1e-4

@@ -32,9 +32,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from factory._errors import InputError, one_line
+from factory._planned import PlannedPoke
 from factory._record import Outcome, check_arrays
 from factory._store import read_json
-from factory.plan import PlannedPoke
 from tisim.io.whole import whole_file
 
 log = logging.getLogger(__name__)

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
+    from factory._poke_data import PokeData
     from factory._summary import Summary
-    from factory.reader import Dataset, PokeData
+    from factory.reader import Dataset
 
 EXAMPLES = """
 [bold]Examples[/bold]

@@ -16,6 +16,7 @@ from factory._drawing import block_size, check_drawn, draw_scene, inclusion_of, 
 from factory._effects import in_one_law
 from factory._errors import InputError
 from factory._parts import part_entries
+from factory._planned import PlannedPoke
 from factory._similar import one_solve
 from factory.materials import (
     Card,
@@ -26,7 +27,7 @@ from factory.materials import (
     material_of,
 )
 from factory.recipe import Recipe
-from tisim import Inclusion, Material, Poke, parts
+from tisim import Inclusion, Material, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
@@ -36,50 +37,6 @@ log = logging.getLogger(__name__)
 
 FORMAT = 1  # version of the store's format; raised whenever its arrays change meaning
 _NAMESPACE = uuid.UUID("6f2b1d0e-6f0b-5c1a-9d53-0a4c7f1b8e21")
-
-
-@dataclass(frozen=True, kw_only=True)
-class PlannedPoke:
-    """One poke to simulate.
-
-    Attributes
-    ----------
-    index : int
-        Index in the plan and in the store.
-    shape, level : int
-        Indices into the recipe's shapes and material levels.
-    geometry : int
-        shape * number of material levels + level.
-    site : int
-        Number of the contact point within its set.
-    shared : bool
-        True if the contact point is common to all material levels of the shape.
-    seed : int
-        Seed that contact point and direction were drawn from.
-    scene : Poke
-        Scene to simulate.
-    solved_as : int
-        Index of the earlier poke whose solve is reused, since the two differ only by a factor of the moduli
-        (`factory._similar`); -1 if the poke is solved itself.
-    force_factor : float
-        Factor on the forces of that solve.
-    """
-
-    index: int
-    shape: int
-    level: int
-    geometry: int
-    site: int
-    shared: bool
-    seed: int
-    scene: Poke
-    solved_as: int = -1
-    force_factor: float = 1.0
-
-    @property
-    def derived(self) -> bool:
-        """True if it reuses another poke's solve."""
-        return self.solved_as >= 0
 
 
 @dataclass(frozen=True, kw_only=True)

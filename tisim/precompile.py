@@ -88,7 +88,7 @@ def precompile(names: Iterable[str] = (), *, workers: int = 1) -> list[str]:
 def _compile(name: str) -> None:
     """Call each kernel of a material once, those of explicit steps only for a material without history."""
     from tisim.discretisation.body import Discretisation, DiscretisedBody
-    from tisim.parts import MaterialPoints
+    from tisim.material_points import MaterialPoints
     from tisim.problems.dynamics.explicit import march
 
     made = material(name)

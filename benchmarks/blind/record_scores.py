@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from benchmarks.blind.records import SEVERAL
+from benchmarks.whole import write_whole
 
 # parameter of an effect in diagnosis.json, and number of its units in one SI unit; only for
 # effects whose amplitude is defined alike on both sides (not the size of a loop of undetermined shape)
@@ -213,7 +214,7 @@ def parser(about: str | None) -> argparse.ArgumentParser:
 def show(pairs: list[Pair], out: Path | None) -> None:
     """Print the confusion matrix and the goals; write the pairs to `out` if given."""
     if out:
-        out.write_text(json.dumps([{"truth": t, "verdict": v} for t, v in pairs], indent=1))
+        write_whole(out, json.dumps([{"truth": t, "verdict": v} for t, v in pairs], indent=1))
     print()
     print(confusion(pairs))
     print()

@@ -253,7 +253,7 @@ def noise_free_fits(kind: str, folder: Path, truth: str) -> dict[str, float]:
     truth : str
         The hidden effect; fitted even where it does not look promising.
     """
-    from calibration.diagnosis.engine.explanation import explain
+    from calibration.diagnosis.engine.explain import explain
     from calibration.diagnosis.engine.null import Null
     from calibration.diagnosis.engine.screening import screen
     from calibration.diagnosis.engine.search import fit_baseline
@@ -297,7 +297,7 @@ class Screening:
 
 
 def screen_beams(folder: Path) -> Screening:
-    """How large the diagnosis sees each candidate, to first order."""
+    """First-order amplitude of each candidate, as the diagnosis screens it."""
     import numpy as np
 
     from calibration.diagnosis.engine.screening import screen
@@ -341,7 +341,7 @@ def fit_command(
 
 
 def fit_in_process(folder: Path, out: Path, law: str, options: Iterable[str] = ()) -> None:
-    """As `fit_command`, in this process: what it has simulated and compiled is there for the next fit."""
+    """Run `fit_command` in this process, so that the next fit reuses its compiled kernels and solutions."""
     from calibration.fit import app
 
     said = io.StringIO()

@@ -37,6 +37,7 @@ import numpy as np
 from benchmarks.references.cylinder import half_cylinder
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.whole import write_whole
 
 RADIUS, DENSITY, GRAVITY = 0.010, 1000.0, 9.81
 FILE = Path(__file__).with_suffix(".json")
@@ -157,7 +158,7 @@ def main() -> None:
                 finish(entries)
                 about = {"units": "m, Pa, kg/m3", "radius": RADIUS, "density": DENSITY, "gravity": GRAVITY,
                          "levels": "level: [dx, dz]", "felupe": fe.__version__}  # fmt: skip
-                FILE.write_text(json.dumps({"about": about, "beams": entries}, indent=1) + "\n")
+                write_whole(FILE, json.dumps({"about": about, "beams": entries}, indent=1) + "\n")
     worst = max((e["error_percent"] or math.inf for e in table.values()), default=math.inf)
     print(f"{len(table)} values, largest estimated error {worst} %, {clock():.0f} CPU s")
 

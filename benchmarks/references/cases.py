@@ -33,6 +33,7 @@ from benchmarks.references.boxes import box, tetrahedra, two_sided
 from benchmarks.references.cylinder import graded
 from benchmarks.references.laws import OgdenIsochoric, mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")
@@ -164,7 +165,7 @@ def main() -> None:
         about = {"units": "m, N, Pa, kg/m3", "cube": {"side": SIDE, "push": PUSH, "shear": SHEAR},
                  "box_beam": {"length": LENGTH, "width": WIDTH, "gravity": GRAVITY, "density": DENSITY},
                  "calculix": "2.20, K/2 (J-1)^2", "felupe": fe.__version__}  # fmt: skip
-        FILE.write_text(json.dumps({"about": about, "cases": cases}, indent=1) + "\n")
+        write_whole(FILE, json.dumps({"about": about, "cases": cases}, indent=1) + "\n")
 
     for name in LAWS:
         levels = {str(m): beam_calculix(name, m) for m in (3, 4, 5)}

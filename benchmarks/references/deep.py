@@ -21,6 +21,7 @@ from typing import Any
 import felupe as fe
 
 from benchmarks.references.poke import MU, PENALTY, Case, estimate, poke
+from benchmarks.whole import write_whole
 
 FILE = Path(__file__).with_suffix(".json")
 DEPTHS = (0.001, 0.002, 0.005, 0.010, 0.015, 0.020)
@@ -51,7 +52,7 @@ def write(found: dict[str, Any]) -> None:
         "forces": "case: level[, contact stiffness]: depth: what was computed",
     }
     values = estimate(found, DEPTHS)
-    FILE.write_text(json.dumps({"about": about, "values": values, "forces": found}, indent=1) + "\n")
+    write_whole(FILE, json.dumps({"about": about, "values": values, "forces": found}, indent=1) + "\n")
 
 
 def main() -> None:

@@ -30,6 +30,7 @@ from benchmarks.blind.timed.convolution import Memory
 from benchmarks.blind.timed.material import Prony
 from benchmarks.blind.timed.solve_indentation import ViscousNeoHookean, isochoric
 from benchmarks.references.mixed import clock
+from benchmarks.whole import write_whole
 
 Array = NDArray[np.float64]
 FILE = Path(__file__).with_suffix(".json")
@@ -199,7 +200,7 @@ def main() -> None:
         "softening": softening(),
         "viscosity": viscosity(),
     }
-    FILE.write_text(json.dumps(found) + "\n", encoding="utf-8")
+    write_whole(FILE, json.dumps(found) + "\n")
     print(f"{FILE.stat().st_size / 1e3:.0f} kB, {clock():.0f} s")
 
 

@@ -49,7 +49,7 @@ def mixed_fields(region: Any, axisymmetric: bool = False) -> fe.FieldContainer:
 
 
 class Contact(Protocol):
-    """What acts on the surface besides the load."""
+    """Surface forces in addition to the load."""
 
     def assemble(self, u: Array, factor: float) -> tuple[Array, sp.csr_matrix]:
         """Residual (minus the force on the nodes) and its tangent at displacements u, load factor."""

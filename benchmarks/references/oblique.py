@@ -34,6 +34,7 @@ from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 from benchmarks.references.poke import BULK, EDGE, HEIGHT, MU, PENALTY, ROD, corners
 from benchmarks.references.rod import pressure
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")
@@ -226,7 +227,7 @@ def main() -> None:
             "felupe": fe.__version__,
         }
         text = json.dumps({"about": about, "runs": found | {key: run}})
-        FILE.write_text(text + "\n")
+        write_whole(FILE, text + "\n")
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_suffix(".json")
@@ -49,7 +50,7 @@ def corners(knots: tuple[float, ...], counts: tuple[int, ...], level: int) -> Ar
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is poked by what, and how deep; moduli in Pa, depths in m.
+    """One indentation: indenter, law and depths; moduli in Pa, depths in m.
 
     tip: "flat", with the edge radius above, or "hemisphere". law: "neo_hookean" or "ogden", alpha 4.
     """
@@ -60,7 +61,7 @@ class Case:
     depths: tuple[float, ...] = DEPTHS
 
     def mixed_law(self) -> Any:
-        """As FElupe's `SolidBody` takes it."""
+        """The law in mixed form, for FElupe's `SolidBody`."""
         if self.law == "neo_hookean":
             return mixed_law(self.law, self.bulk, mu=MU)
         return mixed_law(self.law, self.bulk, mu=(MU / 2,), alpha=(4.0,))
@@ -160,7 +161,7 @@ def write(found: dict[str, Any]) -> None:
         "forces": "friction: level: depth: what was computed",
     }
     text = json.dumps({"about": about, "values": estimate(found), "forces": found}, indent=1)
-    FILE.write_text(text + "\n")
+    write_whole(FILE, text + "\n")
 
 
 def main() -> None:

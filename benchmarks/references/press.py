@@ -19,6 +19,7 @@ from benchmarks.references.cylinder import graded
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, mixed_fields
 from benchmarks.references.quadrilaterals import quadrilaterals
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 
@@ -93,7 +94,7 @@ def main() -> None:
         "stretches": STRETCHES,
         "felupe": fe.__version__,
     }
-    FILE.write_text(json.dumps({"about": about, "cases": found}, indent=1) + "\n")
+    write_whole(FILE, json.dumps({"about": about, "cases": found}, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -151,7 +151,7 @@ class ModelErrorNumbers(_Measured):
 
 
 class NoiseNumbers(_Section):
-    """What is known about the noise.
+    """Knowledge of the noise.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which form a program gets for a law: the same where it has it, else the nearest, with what is lost."""
+"""Form of a law for another program: the same if the program has it, else the nearest, with its error."""
 
 from __future__ import annotations
 

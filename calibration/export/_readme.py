@@ -32,7 +32,7 @@ TITLES = {
 
 
 def losses(job: Job, high: float) -> list[str]:
-    """What the target does not have, a sentence each with its size; high: the largest stretch of interest."""
+    """Properties that the target lacks, a sentence each with its size. high : largest stretch of interest."""
     found = _law(job)
     m = job.material
     plain = elastic(m)

@@ -1,4 +1,4 @@
-"""What a material answers to homogeneous tests, and how far a form that replaces it is off."""
+"""Response of a material to homogeneous tests, and the error of a form that replaces it."""
 
 from __future__ import annotations
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibration.errors import InputError
+from calibration.lab_files._open import open_lab_file
 from calibration.lab_files._table import LabTest
-from calibration.lab_files._text import LabFile, open_lab_file
+from calibration.lab_files._text import LabFile
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -164,7 +164,7 @@ def blocks(file: LabFile, sheet: Sheet) -> tuple[tuple[Block, ...], str]:
 
 
 def without_numbers(file: LabFile) -> InputError:
-    """That the sheets of a workbook hold no table; of a text file `blocks` says it."""
+    """Error for a workbook whose sheets have no table; for a text file `blocks` raises it."""
     return file.error(
         "expected rows of two or more numbers, found none (a row with a word, date or clock time is none)"
     )

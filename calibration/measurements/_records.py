@@ -75,7 +75,7 @@ def bins(
 
 
 class OfBeam:
-    """What a record takes from the trial of its beam; see `calibration.measurements._model.Record`."""
+    """Attributes of a record by the trial of its beam; see `calibration.measurements._model.Record`."""
 
     trial: BeamTrial
 

@@ -21,24 +21,24 @@ SD = (
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """What is to be known.
+    """One question about an experiment.
 
     Attributes
     ----------
     key : str
-        In the answers file.
+        Key in the answers file.
     text : str
-        What it is, with its unit.
+        The quantity, with its unit.
     read : callable
         Text to value; ValueError says what was expected.
     default : object
-        Taken where nobody answers; None: there is none.
+        Value if nobody answers; None for none.
     why : str
-        Where the default comes from, for the written file.
+        Origin of the default, for the written file.
     help : str
-        What one needs to know for the answer.
+        Explanation for whoever answers.
     kept : bool
-        Whether it is a key of an answers file; what follows from others is not.
+        True if it is a key of an answers file; False if it follows from other answers.
     """
 
     key: str
@@ -51,11 +51,11 @@ class Question:
 
 
 class Asker(Protocol):
-    """Somebody to ask."""
+    """Source of answers: a prompt or a file."""
 
     @property
     def place(self) -> str:
-        """Where the answers stand, for messages."""
+        """Name of the source, for messages."""
         ...
 
     def ask(self, where: str, question: Question) -> tuple[Any, bool]:
@@ -194,7 +194,7 @@ class Terminal:
 
 
 def prompted(label: str, default: str | None = None) -> str:
-    """What is typed at a prompt, without blanks around it; the end of the input stops the command."""
+    """Text typed at a prompt, stripped; the end of the input stops the command."""
     try:
         return str(typer.prompt(label, default=default, show_default=default is not None)).strip()
     except typer.Abort:

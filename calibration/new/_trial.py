@@ -1,4 +1,4 @@
-"""What belongs to one trial while it is made: its answers, who is asked, what was taken by default."""
+"""One trial while it is made: its answers, the source of further ones, and the defaults that were taken."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Work:
         why: str = "",
         help: str = "",
     ) -> Any:
-        """What the answers give for a key, or else what is asked or taken by default.
+        """The answer for a key; asked for, or taken by default, if the answers leave it open.
 
         Parameters
         ----------

@@ -56,7 +56,9 @@ class Comparison:
     @property
     def misses(self) -> bool:
         """True if the chosen law's chi-square is above what noise makes of it; an overlap has no noise."""
-        return self.chosen.mean_dice is None and self.chosen.reduced_chi2 > largest_by_chance(self.chosen)
+        fit = self.chosen
+        largest = largest_by_chance(fit.freedom, fit.noise_freedom)
+        return fit.mean_dice is None and fit.reduced_chi2 > largest
 
 
 def compare(results: Sequence[Calibration]) -> Comparison | None:

@@ -13,7 +13,7 @@ from calibration.experiment.model import Experiment
 from calibration.inference import Estimate
 from calibration.pages import FAINT, Picture, looks, paper, picture, plain
 from calibration.report._tables import beam_lengths
-from calibration.study.assessment import spoken
+from calibration.study.assessment import display_name
 from calibration.study.calibration import Calibration
 from calibration.study.cards import shear_interval
 
@@ -38,7 +38,7 @@ def draw_parameters(results: Sequence[Calibration], name: str) -> Picture | None
     for constant in constants:
         if constant not in ("shear_modulus", "bulk_ratio"):
             unit = " / kPa" if constant.startswith("shear_modulus") else ""
-            below.append((spoken(constant) + unit, _bars(fitted, constant)))
+            below.append((display_name(constant) + unit, _bars(fitted, constant)))
     rows = [above, *(below[i : i + 3] for i in range(0, len(below), 3))]
     heights = [0.75 + 0.26 * max(len(bars) for _, bars in row) for row in rows]
     figure = paper(10.5, sum(heights) + 0.4)

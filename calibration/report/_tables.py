@@ -10,7 +10,7 @@ from calibration.pages import NOTHING, Cell, millimetres, seconds, significant
 from calibration.parameters import parametrisation
 from calibration.report._compare import Comparison
 from calibration.report._words import interval, shear
-from calibration.study.assessment import spoken
+from calibration.study.assessment import display_name
 from calibration.study.calibration import Calibration
 
 HEADINGS = (
@@ -145,7 +145,7 @@ def _prior(r: Calibration) -> float:
 def _shape(r: Calibration) -> str:
     shape = [e for e in r.estimates if e.name not in ("shear_modulus", "bulk_ratio")]
     if shape:
-        return "; ".join(f"{spoken(e.name)} {interval(e)}" for e in shape)
+        return "; ".join(f"{display_name(e.name)} {interval(e)}" for e in shape)
     return "none" if r.estimates or len(r.u) < 3 else "no error bars"
 
 

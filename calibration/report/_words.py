@@ -10,7 +10,7 @@ from calibration.experiment.model import Experiment
 from calibration.inference import Estimate
 from calibration.pages import listed, significant, with_sd
 from calibration.report._compare import ALIKE, REFUTED, Comparison, compare
-from calibration.study.assessment import spoken
+from calibration.study.assessment import display_name
 from calibration.study.calibration import Calibration
 
 HELD_WIDE = 1.2  # ends of an interval: further apart, it is the prior's and not that of a hold to 1 %
@@ -155,21 +155,21 @@ def unidentified(result: Calibration) -> list[str]:
                     f", not measured; what is known of it beforehand, {significant(e.low)} to"
                     f" {significant(e.high)}, is in the other constants' intervals"
                 )
-            found.append(f"{result.label}: {spoken(e.name)} was held at {significant(e.value)}{why}.")
+            found.append(f"{result.label}: {display_name(e.name)} was held at {significant(e.value)}{why}.")
         elif e.name not in alone and e.seen in ("not identified", "at a bound"):
             why = "its bound decides" if e.seen == "at a bound" else "its prior or its bounds decide"
-            found.append(f"{result.label}: the data do not determine {spoken(e.name)}: {why}.")
+            found.append(f"{result.label}: the data do not determine {display_name(e.name)}: {why}.")
     return found
 
 
 def _direction(weights: Mapping[str, float]) -> str:
     if len(weights) == 1:
-        name = spoken(next(iter(weights)))
+        name = display_name(next(iter(weights)))
         return f"the data do not determine {name}: its prior and its bounds do"
     first = max(weights, key=lambda n: abs(weights[n]))
     sign = 1.0 if weights[first] > 0.0 else -1.0
     moves = [
-        f"{spoken(n)} {'up' if sign * w > 0 else 'down'}"
+        f"{display_name(n)} {'up' if sign * w > 0 else 'down'}"
         + ("" if n == first else f" by {significant(abs(w / weights[first]), 2)} as much of its range")
         for n, w in sorted(weights.items(), key=lambda pair: -abs(pair[1]))
     ]

@@ -7,19 +7,16 @@ misfit is far above the noise, the data ask for something that the law, the rig 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import comb, erfc, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
+from calibration.inference import Estimate
 from calibration.parameters import Parametrisation, parametrisation
-
-if TYPE_CHECKING:
-    from calibration.study.calibration import Calibration
 
 NEAR = 1e-3  # of a coordinate's range: so near to a bound counts as being there
 LEAST_GAIN = 1.0  # improvement of chi-square by a step over a bound, from which the data ask for it
@@ -35,8 +32,8 @@ NAMES = {
 }
 
 
-def spoken(name: str) -> str:
-    """A search coordinate's name for people; terms of a series keep their number."""
+def display_name(name: str) -> str:
+    """Name of a search coordinate in texts; terms of a series keep their number."""
     for known, word in NAMES.items():
         if name == known:
             return word
@@ -45,22 +42,22 @@ def spoken(name: str) -> str:
     return name.replace("_", " ")
 
 
-def undetermined_terms(result: Calibration) -> str:
+def undetermined_terms(law: str, terms: int, estimates: Iterable[Estimate]) -> str:
     """Sentence on a series law of which the data determine fewer terms than were fitted; empty elsewhere.
 
     Terms that are too much alike make up for each other: their constants run along a valley without an end,
     so that the fit neither converges nor has error bars of them.
     """
-    if result.terms == 1:
+    if terms == 1:
         return ""
-    law = parametrisation(result.law, terms=result.terms)
-    own = {c.name for c in law.coordinates if c.name[-1].isdigit()}  # of a term: shear_modulus_2
-    unknown = [spoken(e.name) for e in result.estimates if e.seen == "not identified" and e.name in own]
+    coordinates = parametrisation(law, terms=terms).coordinates
+    own = {c.name for c in coordinates if c.name[-1].isdigit()}  # of a term: shear_modulus_2
+    unknown = [display_name(e.name) for e in estimates if e.seen == "not identified" and e.name in own]
     if not unknown:
         return ""
     return (
-        f"the data do not determine {result.terms} terms of {result.law} ({', '.join(unknown)} not"
-        f" identified): fit fewer, by --terms {result.terms - 1}"
+        f"the data do not determine {terms} terms of {law} ({', '.join(unknown)} not"
+        f" identified): fit fewer, by --terms {terms - 1}"
     )
 
 
@@ -115,39 +112,37 @@ def constants_lacking(
 ) -> tuple[str, ...]:
     """A phrase for each constant that is driven to a bound or away from its prior."""
     bounds, away = at_bounds(parametrisation, u, gains), off_prior(parametrisation, u)
-    phrases = [f"{spoken(n)} ends at its bound {value:g}" for n, value in bounds.items()]
+    phrases = [f"{display_name(n)} ends at its bound {value:g}" for n, value in bounds.items()]
     for name, distance in away.items():
         if name not in bounds:
             i = parametrisation.names.index(name)
             c = parametrisation.coordinates[i]
             centre, _ = parametrisation.prior()
+            value = c.value(float(np.asarray(u, float)[i]))
             phrases.append(
-                f"{spoken(name)} {c.value(float(np.asarray(u, float)[i])):.3g} lies {distance:.1f} standard"
-                f" deviations from its prior's {c.value(centre[i]):.3g}"
+                f"{display_name(name)} {value:.3g} lies {distance:.1f} standard deviations from its prior's"
+                f" {c.value(centre[i]):.3g}"
             )
     return tuple(phrases)
 
 
-def misfit_lacking(result: Calibration) -> tuple[str, ...]:
-    """A phrase for each way in which a likelihood fit misses the data by more than chance allows."""
-    if result.objective != "likelihood" or not result.parameters:
-        return ()
-    phrases = []
-    if result.reduced_chi2 > max(NOISE_OFF, largest_by_chance(result)):
-        phrases.append(f"reduced chi-square {result.reduced_chi2:.3g}")
-    phrases += nuisances_lacking(result.nuisances)
-    return tuple(phrases)
+def misfit_lacking(reduced_chi2: float, freedom: int, noise_freedom: float | None = None) -> tuple[str, ...]:
+    """A phrase on a reduced chi-square that is larger than chance and a noise stated too small make it."""
+    if reduced_chi2 > max(NOISE_OFF, largest_by_chance(freedom, noise_freedom)):
+        return (f"reduced chi-square {reduced_chi2:.3g}",)
+    return ()
 
 
-def largest_by_chance(result: Calibration) -> float:
+def largest_by_chance(freedom: int, noise_freedom: float | None = None) -> float:
     """Reduced chi-square that noise alone exceeds in 1 of 740 fits (three standard deviations).
 
-    With a noise that is itself estimated, with d degrees of freedom, it follows F(freedom, d).
+    With a noise that is itself estimated, with d = `noise_freedom` degrees of freedom, it follows
+    F(freedom, d).
     """
     tail = 0.5 * erfc(3.0 / sqrt(2.0))
-    if result.noise_freedom is None:
-        return float(chi2.isf(tail, result.freedom)) / result.freedom
-    return float(f_distribution.isf(tail, result.freedom, result.noise_freedom))
+    if noise_freedom is None:
+        return float(chi2.isf(tail, freedom)) / freedom
+    return float(f_distribution.isf(tail, freedom, noise_freedom))
 
 
 def nuisances_lacking(nuisances: Mapping[str, float]) -> list[str]:

@@ -213,7 +213,8 @@ def _polished(
     seen = data.outlines is not None
     fitted = replace(_certain(problem, fitted, end, bulk_seen=seen), unsettled=_unsettled(problem, end))
     if not end.converged:
-        fitted = replace(fitted, message="; ".join(filter(None, (undetermined_terms(fitted), message))))
+        terms = undetermined_terms(fitted.law, fitted.terms, fitted.estimates)
+        fitted = replace(fitted, message="; ".join(filter(None, (terms, message))))
     if options.leave_one_out and data.outlines is not None:
         checks, note = held_out(problem, data.outlines, end.u)
         fitted = replace(fitted, held_out=checks, held_out_note=note)

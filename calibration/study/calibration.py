@@ -15,7 +15,7 @@ from calibration.parameters import (
     parametrisation,
     part_coordinates,
 )
-from calibration.study.assessment import misfit_lacking, sentence
+from calibration.study.assessment import misfit_lacking, nuisances_lacking, sentence
 from tisim import Material
 from tisim.parts import Part, decode
 
@@ -238,8 +238,11 @@ class Calibration:
         return found if "lacking" in data else found.assessed()
 
     def assessed(self, lacking: Sequence[str] = ()) -> Calibration:
-        """The same with its lack of fit stated: the phrases given, and what its misfit and nuisances say."""
-        whole = (*lacking, *misfit_lacking(self))
+        """The same with its lack of fit stated: the phrases given, and those on its misfit and nuisances."""
+        whole = tuple(lacking)
+        if self.objective == "likelihood" and self.parameters:
+            whole += misfit_lacking(self.reduced_chi2, self.freedom, self.noise_freedom)
+            whole += tuple(nuisances_lacking(self.nuisances))
         if not whole:
             return self
         if self.status != "converged":

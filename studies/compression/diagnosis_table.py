@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from calibration.diagnosis.catalogue import effects_of
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit
-from calibration.diagnosis.engine.null import LackOfFit
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.diagnosis.engine.run import Diagnosis
 from calibration.diagnosis.laws import diagnose_with_law
 from calibration.experiment import Experiment, read
@@ -110,7 +110,7 @@ def left_over(model: CompressionModel, fit: Fit) -> dict[str, tuple[Array, Array
 
 
 def draw(found: Diagnosis, model: CompressionModel) -> None:
-    """What is left of three records along the strain."""
+    """Residuals of three records along the strain."""
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 

@@ -88,7 +88,7 @@ def check(curves: PressCurves, fit: PressFit, refinement: float) -> float:
 
 
 def tension() -> None:
-    """What pulling says of the same products: Neo-Hookean G at a stretch of 1.5, from another laboratory."""
+    """Neo-Hookean G of the same products in tension at a stretch of 1.5, from another laboratory."""
     shear = []
     for name in ("10", "30", "50"):
         # the file alone: the reader refuses the folder for another material's times
@@ -104,7 +104,7 @@ def tension() -> None:
 def draw(
     trials: dict[str, CouponTrial], fits: list[PressFit], curves: dict[tuple[str, str], PressCurves]
 ) -> None:
-    """What the fits say over what was measured, over the longer range."""
+    """Stress of the fits over the measured one, over the longer range."""
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 

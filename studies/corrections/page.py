@@ -9,6 +9,7 @@ import numpy as np
 
 from studies.corrections.bench import MIXTURES
 from studies.measured import ROOT
+from studies.pages import insert
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -20,13 +21,7 @@ PICTURE = PAGE.with_name("corrections.png")
 def write_table(name: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Put a table between its markers in the page."""
     lines = ["| " + " | ".join(r) + " |" for r in (head, ["---"] * len(head), *rows)]
-    text = PAGE.read_text(encoding="utf-8")
-    first, last = f"<!-- {name} -->\n", f"\n<!-- end {name} -->"
-    before, _, rest = text.partition(first)
-    _, end, after = rest.partition(last)
-    if not end:
-        raise SystemExit(f"{PAGE}: expected the markers of {name}")
-    PAGE.write_text(before + first + "\n".join(lines) + last + after, encoding="utf-8")
+    insert(PAGE, name, "\n".join(lines))
 
 
 def read_table(name: str) -> list[list[str]]:

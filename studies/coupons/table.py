@@ -24,6 +24,7 @@ from calibration.measurements.homogeneous import nominal_stress, nominal_stresse
 from calibration.parameters import parametrisation
 from studies.coupons.fit import CouponFit, FitStatus, fit_coupons
 from studies.measured import ROOT, real
+from studies.pages import insert
 
 PAGE = Path(__file__).with_name("README.md")
 RUBBERS = {"Meunier": "meunier-2008-silicone", "Treloar": "treloar-1944", "Kawabata": "kawabata-1981"}
@@ -143,7 +144,7 @@ def one_mode() -> str:
 
 
 def parameters() -> str:
-    """What the fits of `all_modes` found, and what decided it."""
+    """Parameters by the fits of `all_modes`, with what determines them."""
     rows = []
     for name in RUBBERS:
         for law, terms in LAWS:
@@ -250,17 +251,6 @@ TABLES: dict[str, Callable[[], str]] = {
 PRINTED: dict[str, Callable[[], None]] = {"pictures": pictures, "notes": notes}
 
 
-def insert(name: str, text: str) -> None:
-    """Put a table between its markers in the page."""
-    begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
-    page = PAGE.read_text(encoding="utf-8")
-    before, _, rest = page.partition(begin)
-    _, found, after = rest.partition(end)
-    if not found:
-        sys.exit(f"{PAGE}: expected the markers {begin} and {end}")
-    PAGE.write_text(f"{before}{begin}\n{text}\n{end}{after}", encoding="utf-8")
-
-
 def main(parts: Sequence[str]) -> None:
     if unknown := set(parts) - {*TABLES, *PRINTED}:
         sys.exit(f"expected parts among {', '.join([*TABLES, *PRINTED])}; got {', '.join(sorted(unknown))}")
@@ -271,7 +261,7 @@ def main(parts: Sequence[str]) -> None:
             PRINTED[part]()
         else:
             text = TABLES[part]()
-            insert(part, text)
+            insert(PAGE, part, text)
             print(text)
         print(f"{part}: {time.process_time() - begin:.0f} s of one core", flush=True)
 

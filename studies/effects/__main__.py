@@ -133,7 +133,7 @@ def _changes(
     candidate: Candidate,
     amplitude: float,
 ) -> list[Array]:
-    """What an effect adds to each record [SI]. refit : how the baseline's coordinates answer it."""
+    """Change of each record by an effect [SI]. refit : change of the baseline's coordinates that fits it."""
     part = 1.0
     for _ in range(6):
         try:

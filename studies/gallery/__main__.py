@@ -19,10 +19,10 @@ from pathlib import Path
 from typing import Any
 
 from studies.measured import real
+from studies.pages import insert
 
 PAGE = Path(__file__).with_name("README.md")
 MINUTES = 5.0
-BEGIN, END = "<!-- gallery -->", "<!-- end gallery -->"
 LAW = frozenset({"law-form", "limited-extensibility", "strain-stiffening", "second-invariant"})
 PLATENS = frozenset({"platen-bonding", "platen-friction"})
 TESTS = frozenset({"set-between-tests", "test-order"})
@@ -217,7 +217,7 @@ def interval(share: dict[str, Any] | None) -> str:
 
 
 def agrees(one: Set, named: set[str], sets: Sequence[set[str]]) -> str:
-    """Whether what is named is what an expert would say. sets: that the data cannot tell apart."""
+    """Agreement of the named causes with an expert's. sets : sets of causes that the data cannot separate."""
     if not named:
         return "nothing named"
     if named & one.against:
@@ -247,13 +247,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         return
     head = "| data | source | verdict | causes | share | held-out skill | s | a materials expert | agree |"
     table = "\n".join([head, "| --- " * 9 + "|", *rows])
-    text = f"*Made {datetime.date.today().isoformat()}.*\n\n{table}"
-    page = PAGE.read_text(encoding="utf-8")
-    before, _, rest = page.partition(BEGIN)
-    _, found, after = rest.partition(END)
-    if not found:
-        sys.exit(f"{PAGE}: expected the markers {BEGIN} and {END}")
-    PAGE.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
+    insert(PAGE, "gallery", f"*Made {datetime.date.today().isoformat()}.*\n\n{table}")
 
 
 if __name__ == "__main__":

@@ -135,14 +135,17 @@ def copied(record: Meat, other: Meat) -> Array:
 
 
 def rms(record: Meat, force: Array) -> float:
-    """Of what is left in the hold, over the largest force."""
+    """Root mean square residual in the hold, over the largest force."""
     hold = slice(record.turn + 1, None)
     return float(np.sqrt(np.mean((force[hold] - record.force[hold]) ** 2)))
 
 
 def of_the_ramp(records: Sequence[Meat], fractions: Array) -> tuple[Array, Array]:
-    """How the force AT[1] after the largest goes with how long the loading took: line's slope [1/s] and
-    correlation, as measured and as one relaxation of all places predicts it; shape (2,) each."""
+    """Regression of the force AT[1] after the largest on the duration of the loading.
+
+    Slope [1/s] and correlation, shape (2,), as measured and as one relaxation function of all contact points
+    predicts them.
+    """
     took = np.array([r.time[r.turn] for r in records])
     measured = np.array([r.after(AT[1]) for r in records])
     found = np.array(

@@ -209,7 +209,7 @@ def references(mixture: str) -> list[Reference]:
 
 
 def volume() -> None:
-    """What the CAD body's volume owes to its facets and to the stretch of its mid line."""
+    """Errors of the CAD body's volume by its facets and by the stretch of its mid line."""
     sides = 2 * np.pi / CAD_SIDES
     print(f"\nvolume: a section of {CAD_SIDES} sides has {100 * (1 - np.sin(sides) / sides):.2f} % less area")
     print("  mixture: mid line longer than the rest length [%], each length, mean; CAD body against the rest")

@@ -20,7 +20,7 @@ import numpy as np
 from calibration.diagnosis import Diagnosis, diagnose, model_of
 from calibration.diagnosis.drawing.release import DrawnRelease, drawn
 from calibration.diagnosis.engine.fitting import Fit
-from calibration.diagnosis.engine.null import LackOfFit
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.errors import InputError
 from calibration.experiment import BeamTrial, Experiment, read
 from calibration.measurements.release.model import ReleaseModel
@@ -78,7 +78,7 @@ def table(name: str, model: ReleaseModel, found: Diagnosis) -> None:
 
 
 def clamp_table(experiment: Experiment) -> None:
-    """How far markers next to the clamp go for a millimetre of the tip's swing: with no model at all."""
+    """Motion of the markers next to the clamp per millimetre of the tip's free vibration, without a model."""
     print("\n| mm per mm of the tip's swing | base1 x, z | base2 x, z | base3 x, z | turn, of the drop |")
     print("| --- | --- | --- | --- | --- |")
     for t in experiment.trials:

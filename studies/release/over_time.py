@@ -87,7 +87,7 @@ def experiment_of(folder: Path, *, height: float = EDGE) -> Experiment:
 
 
 def measured(experiment: Experiment) -> tuple[Measurements, ModelObjective[ReleaseModel]]:
-    """What a fit over time takes of the runs."""
+    """Measurements and objective of a fit over time to the runs."""
     law = parts.with_parts(parametrisation("neo-hookean"), (SPECTRUM,), experiment, MATERIAL)
     data = measurements(experiment, MATERIAL, law, workers=1)
     (objective,) = data.objectives
@@ -96,7 +96,7 @@ def measured(experiment: Experiment) -> tuple[Measurements, ModelObjective[Relea
 
 
 def least_squares_of(objective: ModelObjective[ReleaseModel]) -> State:
-    """Where a fit of the runs begins and, but for its error bars, ends."""
+    """Start state of a fit of the runs, which is its least-squares solution already."""
     u = objective.suggested_start()
     assert u is not None, "a release says where a fit begins"
     return objective.state(u)
@@ -134,8 +134,10 @@ def _let_go(model: ReleaseModel, state: State, *, drag: bool) -> State:
 
 
 def swings(experiment: Experiment) -> list[tuple[str, list[tuple[float, float, float]]]]:
-    """Of each run, in windows of SWINGS periods: amplitude [mm], frequency [Hz] and damping ratio of the tip,
-    by a decaying swing about a straight line. No model of the bar is in them."""
+    """Free vibration of the tip in each run, by windows of SWINGS periods, without a model of the beam.
+
+    Amplitude [mm], frequency [Hz] and damping ratio of a decaying oscillation about a straight line.
+    """
     found = []
     for trial in experiment.trials:
         assert isinstance(trial, BeamTrial)

@@ -164,7 +164,7 @@ def settled_table(experiment: Experiment) -> None:
 
 
 def error_table(experiment: Experiment, fit: MotionFit, base: Seen) -> None:
-    """What the mesh and the time step leave, on gravity-a."""
+    """Errors by the mesh and the time step, on gravity-a."""
     fine = predict(experiment, FITTED, replace(fit), SHORT)
     short = seen(fine, fine.predicted, fine.settled_predicted)
     static = objective(experiment, FITTED, stages=("settled",), fidelity=FINE)

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from benchmarks.blind.timed.cases import draw_indentation
-from benchmarks.blind.timed.indentation import CHECKS, load, pushes_of, stored_force
+from benchmarks.blind.timed.cases import draw_indentation, pushes_of
+from benchmarks.blind.timed.indentation import CHECKS, load, stored_force
 
 Array = NDArray[np.float64]
 HALF_SPACE = CHECKS["half-space, loading"]

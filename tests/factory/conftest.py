@@ -17,10 +17,11 @@ from typer.testing import CliRunner, Result
 from factory import _build
 from factory._build import BuildProgress, build_dataset
 from factory._execution import run_poke
+from factory._planned import PlannedPoke
 from factory._record import Outcome
 from factory._staging import building_folder
 from factory._store import LEDGER
-from factory.plan import Plan, PlannedPoke, make_plan
+from factory.plan import Plan, make_plan
 from factory.recipe import Recipe, load_recipe
 from tests.unrendered import unrendered
 

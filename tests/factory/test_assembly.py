@@ -16,8 +16,9 @@ from factory._assembly import NotCheckedError, check_assembly, check_poke, nodal
 from factory._build import build_dataset
 from factory._execution import run_poke
 from factory._interior import Interior
+from factory._poke_data import PokeData
 from factory.plan import make_plan
-from factory.reader import Dataset, PokeData, open_dataset
+from factory.reader import Dataset, open_dataset
 from factory.recipe import load_recipe
 from factory.verify import app
 from tests.factory.conftest import TINY, run_app

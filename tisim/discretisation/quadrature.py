@@ -20,9 +20,10 @@ from tisim.mesh import ElementKind, Mesh
 from tisim.mesh._elements import (
     HEX_CUTS,
     NODE_PLACES,
-    QUAD_PLACES,
+    TET_EDGES,
     cube_points,
     cut_hexahedra,
+    facet_shape_functions,
     serendipity,
 )
 
@@ -30,7 +31,6 @@ Array = NDArray[np.float64]
 
 _HEX_CORNERS = NODE_PLACES["hex8"]
 _A, _B = 0.5854101966249685, 0.1381966011250105
-_TET10_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 # Fraction of a hexahedron's energy in its tetrahedra, see `_hexahedra` and `TetrahedralParts`.
 TETRAHEDRAL_PART = 0.1
 # That fraction if the worst tetrahedron's share of the volume falls below CRUSHED times its share at rest.
@@ -93,7 +93,7 @@ def shape(kind: ElementKind, points: Array) -> tuple[Array, Array]:
     d = np.empty((len(points), 10, 3))
     n[:, :4] = bary * (2.0 * bary - 1.0)
     d[:, :4] = (4.0 * bary - 1.0)[:, :, None] * dbary
-    for e, (i, j) in enumerate(_TET10_EDGES):
+    for e, (i, j) in enumerate(TET_EDGES):
         n[:, 4 + e] = 4.0 * bary[:, i] * bary[:, j]
         d[:, 4 + e] = 4.0 * (bary[:, i, None] * dbary[j] + bary[:, j, None] * dbary[i])
     return n, d
@@ -205,27 +205,11 @@ def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]
     g, w = np.polynomial.legendre.leggauss(order)
     u, v = (c.ravel() for c in np.meshgrid(g, g, indexing="ij"))
     weights = np.outer(w, w).ravel()
-    if n_nodes == 4:
-        cu, cv = np.array([-1.0, 1, 1, -1]), np.array([-1.0, -1, 1, 1])
-        a, b = 1 + u[:, None] * cu, 1 + v[:, None] * cv
-        return a * b / 4, np.stack([cu * b, cv * a], axis=2) / 4, weights
-    if n_nodes == 8:
-        return *serendipity(np.column_stack([u, v]), QUAD_PLACES), weights
+    if n_nodes in (4, 8):
+        return *facet_shape_functions(n_nodes, np.column_stack([u, v])), weights
     r = 0.5 * (1 + u)
     s = 0.5 * (1 + v) * (1 - r)
-    weights = weights * 0.25 * (1 - r)
-    bary = np.column_stack([1 - r - s, r, s])
-    d = np.array([[-1.0, -1], [1, 0], [0, 1]])
-    if n_nodes == 3:
-        return bary, np.broadcast_to(d, (len(r), 3, 2)).copy(), weights
-    n = np.empty((len(r), 6))
-    dn = np.empty((len(r), 6, 2))
-    n[:, :3] = bary * (2 * bary - 1)
-    dn[:, :3] = (4 * bary - 1)[:, :, None] * d
-    for e, (i, j) in enumerate(((0, 1), (1, 2), (2, 0))):
-        n[:, 3 + e] = 4 * bary[:, i] * bary[:, j]
-        dn[:, 3 + e] = 4 * (bary[:, i, None] * d[j] + bary[:, j, None] * d[i])
-    return n, dn, weights
+    return *facet_shape_functions(n_nodes, np.column_stack([r, s])), weights * 0.25 * (1 - r)
 
 
 def facet_areas(mesh: Mesh, facets: NDArray[np.int32], order: int = 3) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
 from tisim.kernels.isochoric import NONE, Features, make_load_point
 from tisim.kernels.response import make_response
 from tisim.kernels.tensors import cofactor, determinant
-from tisim.laws import Law
+from tisim.laws._law import Law
 
 _f1 = ti.types.ndarray(dtype=f64, ndim=1)
 _f2 = ti.types.ndarray(dtype=f64, ndim=2)

@@ -12,7 +12,7 @@ from typing import Any
 
 from tisim.kernels._taichi import ti
 from tisim.kernels.tensors import PAIRS
-from tisim.laws import Law
+from tisim.laws._law import Law
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from functools import cache
 from tisim.kernels._taichi import Kernel, ensure_runtime, f64, i32, ti
 from tisim.kernels.elements import _f1, _f2, _f4, _i2, force_functions
 from tisim.kernels.isochoric import NONE, Features
-from tisim.laws import Law
+from tisim.laws._law import Law
 
 # entries of `state`, initially 0 and kept between launches
 SPENT, START, DRIFT, SCALE, KINETIC, MIN_JACOBIAN, STEPS, LOST = range(8)

@@ -13,7 +13,7 @@ from tisim.kernels.elements import MOST_NODES, deformation_gradient, force_funct
 from tisim.kernels.isochoric import NONE, Features, make_load_point
 from tisim.kernels.response import make_response
 from tisim.kernels.tensors import determinant
-from tisim.laws import Law
+from tisim.laws._law import Law
 
 _f1 = ti.types.ndarray(dtype=f64, ndim=1)
 _f2 = ti.types.ndarray(dtype=f64, ndim=2)

@@ -28,7 +28,7 @@ from tisim.kernels.tensors import (
     sign,
     stretches,
 )
-from tisim.laws import Law
+from tisim.laws._law import Law
 
 
 def make_theta(law: Law) -> Any:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tisim.laws._law import Law, Parameters
+from tisim.laws._registry import get
 
 Array = NDArray[np.float64]
 
@@ -195,9 +196,7 @@ def check_law(
 
 
 def _law(law: str | Law) -> Law:
-    from tisim import laws
-
-    return law if isinstance(law, Law) else laws.get(law)
+    return law if isinstance(law, Law) else get(law)
 
 
 def _deformations(rng: np.random.Generator, count: int) -> list[Array]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Literal
 
 from tisim.laws._law import Parameters
+from tisim.laws._registry import get
 
 Constants = dict[str, "float | tuple[float, ...]"]
 Extension = Literal["yeoh", "mooney-rivlin", "eight-chain"]
@@ -28,9 +29,7 @@ def scaled(law: str, parameters: Parameters, factor: float) -> Constants:
     dict
         Parameters, in the order given.
     """
-    from tisim import laws
-
-    units = {name: unit for name, (unit, _) in laws.get(law).parameters.items()}
+    units = {name: unit for name, (unit, _) in get(law).parameters.items()}
     return {
         name: _each(value, lambda x: x * factor) if units[name] == "Pa" else value
         for name, value in parameters.items()
@@ -58,9 +57,7 @@ def with_moduli(law: str, parameters: Parameters, *, shear_modulus: float, bulk_
     dict
         Parameters, in the law's order.
     """
-    from tisim import laws
-
-    chosen = laws.get(law)
+    chosen = get(law)
     plain = chosen.from_moduli(shear_modulus, bulk_modulus)
     stiffer = chosen.from_moduli(shear_modulus, 2.0 * bulk_modulus)
     before = chosen.moduli(parameters).shear_modulus

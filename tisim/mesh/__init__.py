@@ -1,5 +1,6 @@
 """Meshes: the data type, structured beams and blocks, bodies from surfaces."""
 
+from tisim.mesh._elements import facet_shape_functions
 from tisim.mesh._mesh import (
     ELEMENT_FACETS,
     FACET_KIND,
@@ -43,6 +44,7 @@ __all__ = [
     "body_from_surface",
     "boundary_facets",
     "checked_surface",
+    "facet_shape_functions",
     "outline",
     "poke_mesh",
     "quality",

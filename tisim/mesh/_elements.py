@@ -77,6 +77,33 @@ def serendipity(
     return product * level, gradient + product[..., None] * np.where(corner[:, None], nodes, 0.0)
 
 
+def facet_shape_functions(
+    n_nodes: int, places: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shape functions (q, a) of a facet of 3, 4, 6 or 8 nodes, and derivatives (q, a, 2), at points (q, 2).
+
+    Natural coordinates: triangles on the unit simplex, quadrangles on [-1, 1]^2.
+    """
+    if n_nodes == 4:
+        s, t = QUAD_PLACES[:4].T
+        a, b = 1 + places[:, :1] * s, 1 + places[:, 1:] * t
+        return a * b / 4, np.stack([s * b, t * a], axis=2) / 4
+    if n_nodes == 8:
+        return serendipity(places, QUAD_PLACES)
+    bary = np.column_stack([1 - places[:, 0] - places[:, 1], places])
+    d = np.array([[-1.0, -1], [1, 0], [0, 1]])
+    if n_nodes == 3:
+        return bary, np.broadcast_to(d, (len(places), 3, 2)).copy()
+    n = np.empty((len(places), 6))
+    dn = np.empty((len(places), 6, 2))
+    n[:, :3] = bary * (2 * bary - 1)
+    dn[:, :3] = (4 * bary - 1)[:, :, None] * d
+    for e, (i, j) in enumerate(((0, 1), (1, 2), (2, 0))):
+        n[:, 3 + e] = 4 * bary[:, i] * bary[:, j]
+        dn[:, 3 + e] = 4 * (bary[:, i, None] * d[j] + bary[:, j, None] * d[i])
+    return n, dn
+
+
 def quadrature(kind: ElementKind) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points (q, 3) and weights (q,) that are exact for the volume of a curved element.
 

@@ -220,7 +220,7 @@ def to_quadratic(mesh: Mesh, *, project: Projection | None = None) -> Mesh:
 
 
 def curved(mesh: Mesh, *, between: Between | None) -> Mesh:
-    """As `to_quadratic`; `between` maps ends (k, 2, 3) of boundary edges to their middles (k, 3) [m]."""
+    """Mesh of `to_quadratic`; `between` maps ends (k, 2, 3) of boundary edges to their middles (k, 3) [m]."""
     if mesh.kind not in _QUADRATIC:
         raise MeshError(f"only a tet4 or hex8 mesh can be made quadratic, this one is {mesh.kind}")
     kind, local = _QUADRATIC[mesh.kind]

@@ -57,13 +57,26 @@ LogTime(part=0.05, first=0.01, last=10000.0)
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from tisim.parts._entry import EntryError, EntryProblem, decode, encode
 from tisim.parts._part import FIELDS, Fibres, Part, Softening, Spectrum, Viscosity, of, ramp_weight
-from tisim.parts._point import MaterialPoints, PointResponse, respond
 from tisim.parts._registry import get, names, register, unregister
 from tisim.parts.holzapfel_gasser_ogden import HolzapfelGasserOgden
 from tisim.parts.ogden_roxburgh import OgdenRoxburgh
 from tisim.parts.prony import Prony
+
+if TYPE_CHECKING:
+    from tisim.material_points import MaterialPoints, PointResponse, respond
+
+
+def __getattr__(name: str) -> Any:
+    if name in ("MaterialPoints", "PointResponse", "respond"):  # of whole materials, which are made of parts
+        from tisim import material_points
+
+        return getattr(material_points, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "FIELDS",

@@ -232,7 +232,7 @@ def scopes(case: Scored) -> list[tuple[str, frozenset[int], frozenset[int]]]:
 
 
 def scope_goals(cases: Sequence[Scored]) -> list[Goal]:
-    """How often the named beams are the right ones: for all cases, and by carrier of the effect."""
+    """Counts of cases in which the named beams are the right ones: of all, and by carrier of the effect."""
     found = [s for c in cases for s in scopes(c)]
     rows: list[Goal] = [("named rightly: in the right beams", "-", _right(found), len(found))]
     for carrier in ("all beams", "one material", "one beam"):

@@ -21,6 +21,7 @@ import scipy.sparse as sp
 from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, mixed_fields
 from benchmarks.references.press import meridian
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 
@@ -114,7 +115,7 @@ def main() -> None:
         "stress_over_shear_modulus": cases,
         "neo_hookean_by_diameter_over_height": shapes,
     }
-    FILE.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    write_whole(FILE, json.dumps(table, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ from benchmarks.references.laws import mixed_law
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields
 from benchmarks.references.quadrilaterals import quadrilaterals, with_middles
 from benchmarks.references.rod import FlatRod
+from benchmarks.whole import write_whole
 
 Array = np.ndarray[Any, Any]
 FILE = Path(__file__).with_name("forces.json")
@@ -234,7 +235,7 @@ def main() -> None:
             print(f"{name}, stiffer contact", flush=True)
             found[name]["rigid"] = rigid(s, found[name]["in"])
         lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in found.items())
-        FILE.write_text("{\n" + lines + "\n}\n")
+        write_whole(FILE, "{\n" + lines + "\n}\n")
 
 
 if __name__ == "__main__":

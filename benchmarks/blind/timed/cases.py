@@ -20,7 +20,7 @@ from benchmarks.blind.beams.model import Beam
 from benchmarks.blind.timed import coupons
 from benchmarks.blind.timed.beams import hang
 from benchmarks.blind.timed.course import Course, cycles
-from benchmarks.blind.timed.indentation import DEEPEST, LAYERS, stored_force
+from benchmarks.blind.timed.indentation import DEEPEST, LAYERS, Push, stored_force
 from benchmarks.blind.timed.material import Fibres, Prony, Softening, Solid
 
 Array = NDArray[np.float64]
@@ -173,6 +173,15 @@ def draw_indentation(seed: int) -> Case:
         course = Course(start=0.0).ramp(depth, speed).hold(hold).ramp(0.3 * depth, speed)
         pokes.append(Poke(id=base, base=base, course=course, noise=float(rng.uniform(0.002, 0.005))))
     return replace(case, pokes=tuple(pokes))
+
+
+def pushes_of(seed: int) -> dict[str, Push]:
+    """Indentations of a seed, by the names under which `stored_force` finds them."""
+    case = draw_indentation(seed)
+    return {
+        f"seed {seed}, {poke.base}": Push(layer=LAYERS[poke.base], prony=case.solid.prony, course=poke.course)
+        for poke in case.pokes
+    }
 
 
 def draw_together(seed: int) -> Case:

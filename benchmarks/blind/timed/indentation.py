@@ -131,14 +131,3 @@ def stored_force(name: str, course: Course, times: Array) -> Array:
             since, asked = np.sqrt(since), np.sqrt(asked)
         found[mine] = CubicSpline(since, forces[inside])(np.minimum(asked, since[-1]))
     return np.maximum(found, 0.0)  # no adhesion; interpolation may give values below 0
-
-
-def pushes_of(seed: int) -> dict[str, Push]:
-    """Indentations of a seed, by the names under which they are stored."""
-    from benchmarks.blind.timed.cases import draw_indentation
-
-    case = draw_indentation(seed)
-    return {
-        f"seed {seed}, {poke.base}": Push(layer=LAYERS[poke.base], prony=case.solid.prony, course=poke.course)
-        for poke in case.pokes
-    }

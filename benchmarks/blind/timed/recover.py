@@ -31,6 +31,7 @@ import yaml
 from benchmarks.blind.timed.cases import KINDS, MATERIAL, PARTS, write
 from benchmarks.blind.timed.make import drawn
 from benchmarks.blind.under_test import NotFittedError, estimates_of, fit_command, fit_in_process
+from benchmarks.whole import write_whole
 
 GOAL = 0.9
 OPTIONS = {"prony": ("--time", "prony"), "mullins": ("--damage", "mullins"), "fibres": ("--fibres",)}
@@ -68,7 +69,7 @@ class Interval:
 
     @property
     def holds(self) -> bool:
-        """Whether the truth lies in the interval."""
+        """True if the interval contains the truth."""
         return self.low is not None and self.high is not None and self.low <= self.truth <= self.high
 
 
@@ -186,7 +187,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             in_process=given.in_process,
         )
         text = json.dumps([asdict(i) | {"holds": i.holds} for i in intervals], indent=1)
-        (given.out / f"{given.kind}.json").write_text(text + "\n", encoding="utf-8")
+        write_whole(given.out / f"{given.kind}.json", text + "\n")
     print("\n".join(summary(intervals)))
     held = sum(i.holds for i in intervals) / len(intervals)
     return int(held < given.goal or any(i.problem for i in intervals))

@@ -22,9 +22,10 @@ import felupe as fe
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.blind.timed.cases import pushes_of
 from benchmarks.blind.timed.convolution import Memory, step_times
 from benchmarks.blind.timed.course import Course
-from benchmarks.blind.timed.indentation import CHECKS, Layer, Push, load, pushes_of, save
+from benchmarks.blind.timed.indentation import CHECKS, Layer, Push, load, save
 from benchmarks.blind.timed.material import Prony
 from benchmarks.references.laws import log_volumetric
 from benchmarks.references.mixed import MixedModel, clock, mixed_fields

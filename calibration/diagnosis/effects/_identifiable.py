@@ -1,4 +1,4 @@
-"""What the loadings of records must show before an effect's amplitude is identifiable, in any kind of test.
+"""Conditions on the loadings of records under which an effect's amplitude is identifiable, in any test.
 
 `unloads`, `loads_again` and `compared_with_others` are rules as they stand (`EffectModel.identifiable`): they
 take the records that a candidate reaches, and all records.

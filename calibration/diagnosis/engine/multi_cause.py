@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from calibration.diagnosis.engine.explanation import Explanation, Names, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation, Names
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.rules import Rules

@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
+from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.diagnosis.engine.screening import Screen, basis_of
 from calibration.measurements._baseline import ALLOWED, SPECIMENS
 from calibration.measurements._effect import Candidate
+from calibration.measurements._model import MeasurementModel
 from calibration.measurements._noise_known import Estimated
-
-if TYPE_CHECKING:
-    from calibration.diagnosis.engine.explanation import Explanation
-    from calibration.measurements._model import MeasurementModel
 
 Array = NDArray[np.float64]
 
@@ -27,22 +25,6 @@ DRAWS = 4000
 EVERYTHING = "everything"
 BEYOND = 0.1  # relative to the least p-value of the draws: below, no draw is expected to reach the value
 ROUNDING = 1e-7  # relative length of a column, without the fitted part, that is rounding error
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class LackOfFit:
-    """Result of the lack-of-fit test.
-
-    Attributes
-    ----------
-    p_value : p-value of all tests together.
-    each : p-value of each test by its name.
-    worst : name of the test with the smallest p-value.
-    """
-
-    p_value: float
-    each: Mapping[str, float]
-    worst: str
 
 
 class Null:

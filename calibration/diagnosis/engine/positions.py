@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.null import Null
 from calibration.measurements._effect import Candidate
 from calibration.measurements._model import MeasurementModel

@@ -6,7 +6,8 @@ import time
 from dataclasses import dataclass, replace
 
 from calibration.diagnosis.engine.advice import advice
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
 from calibration.diagnosis.engine.held_out import HeldOut, held_out_improvement
 from calibration.diagnosis.engine.model_error import model_error_of

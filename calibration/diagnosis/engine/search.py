@@ -9,16 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.engine.explanation import (
-    Explanation,
-    Names,
-    equivalent_explanations,
-    explain,
-    ranked_first,
-)
+from calibration.diagnosis.engine.explain import explain, ranked_first
+from calibration.diagnosis.engine.explanation import Explanation, Names, equivalent_explanations
 from calibration.diagnosis.engine.fitting import AS_FITTED, Fit, fit
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.diagnosis.engine.multi_cause import hiding_each_other, with_second, with_third
-from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.positions import at_best_position
 from calibration.diagnosis.engine.rules import Rules
 from calibration.diagnosis.engine.screening import Screen, screen

@@ -3,44 +3,55 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-if TYPE_CHECKING:
-    from calibration.diagnosis.engine.explanation import Explanation
-    from calibration.diagnosis.engine.held_out import HeldOut
-    from calibration.diagnosis.engine.remainder import Remainder
-    from calibration.diagnosis.engine.shares import Interval
-    from calibration.diagnosis.engine.verdict import Diagnosis
+from calibration.diagnosis.engine.explanation import Explanation
+from calibration.diagnosis.engine.held_out import HeldOut
+from calibration.diagnosis.engine.partly import Assessed
+from calibration.diagnosis.engine.remainder import Remainder
+from calibration.diagnosis.engine.search import Finding
+from calibration.diagnosis.engine.shares import Interval
+from calibration.measurements._effect import Candidate
 
 
-def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict, in one or several sentences."""
-    finding = diagnosis.finding
+def sentence(
+    finding: Finding,
+    chosen: Explanation | None,
+    effects: Mapping[str, Any],
+    *,
+    unit: tuple[str, float],
+    shares: Mapping[Candidate, Interval],
+    share: Interval | None = None,
+    held_out: HeldOut | None = None,
+    nearest: Assessed | None = None,
+    remainder: Remainder | None = None,
+) -> str:
+    """The verdict, in one or several sentences; the parameters are the attributes of `Diagnosis`."""
     if finding.verdict == "none":
         return "The simulation agrees with the measurements to within their noise: no cause to name."
     if finding.verdict == "unexplained":
-        return _unexplained(diagnosis)
-    chosen = diagnosis.chosen
+        return _unexplained(nearest)
     assert chosen is not None
-    named, short = _named(diagnosis, chosen), " + ".join(chosen.names)
+    named, short = _named(chosen, effects), " + ".join(chosen.names)
     if finding.verdict == "found":
         them = "it" if len(chosen.candidates) == 1 else "them"
         return (
             f"Found: {named} ({short}). With {them} the simulation agrees with the measurements to within"
-            f" their noise{_skill(diagnosis.held_out, 'it explains ')}."
+            f" their noise{_skill(held_out, 'it explains ')}."
         )
     if finding.verdict == "partly explained":
-        return _partly(diagnosis, chosen)
+        text = _partly(finding, chosen, effects, share, held_out)
+        if finding.doubt:
+            return f"{text} Only noise remains, but the cause is not called found, since {finding.doubt}."
+        return f"{text} {what_remains(remainder, unit)}" if remainder is not None else text
     sets, common = finding.equivalent, finding.certain
     if common:
-        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        first = " and ".join(effects[n].sentence for n in common)
         rest = _or([" + ".join(n for n in s if n not in common) for s in sets])
-        takes = _takes(diagnosis, common)
+        takes = _takes(shares, common)
         other = (
-            "There is another, smaller cause"
-            if _most(diagnosis, common)
-            else "There is another, larger cause"
+            "There is another, smaller cause" if _most(shares, common) else "There is another, larger cause"
         )
         return (
             f"Found in part: {first} ({' + '.join(common)}{takes}). {other}, which these data cannot"
@@ -50,28 +61,33 @@ def sentence(diagnosis: Diagnosis) -> str:
     return f"There is a cause, but these data cannot identify it: most likely {named} ({short}); or {others}."
 
 
-def _takes(diagnosis: Diagnosis, names: Sequence[str]) -> str:
+def _takes(shares: Mapping[Candidate, Interval], names: Sequence[str]) -> str:
     """Clause with the explained fraction of one cause; "" if `names` are several candidates."""
-    own = [s for c, s in diagnosis.shares.items() if c.effect in names]
+    own = [s for c, s in shares.items() if c.effect in names]
     return f", {percent(own[0])} of the misfit beyond noise" if len(own) == 1 else ""
 
 
-def _most(diagnosis: Diagnosis, names: Sequence[str]) -> bool:
+def _most(shares: Mapping[Candidate, Interval], names: Sequence[str]) -> bool:
     """True if these causes remove at least half of what all named causes remove."""
-    own = sum(s.value for c, s in diagnosis.shares.items() if c.effect in names)
-    return 2.0 * own >= sum(s.value for s in diagnosis.shares.values())
+    own = sum(s.value for c, s in shares.items() if c.effect in names)
+    return 2.0 * own >= sum(s.value for s in shares.values())
 
 
-def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
-    sets = diagnosis.finding.equivalent
-    share = "" if diagnosis.share is None else percent(diagnosis.share)
-    takes = f"which explains {share} of the misfit beyond noise{_skill(diagnosis.held_out)}."
-    common = diagnosis.finding.certain
+def _partly(
+    finding: Finding,
+    chosen: Explanation,
+    effects: Mapping[str, Any],
+    share: Interval | None,
+    held_out: HeldOut | None,
+) -> str:
+    sets, common = finding.equivalent, finding.certain
+    fraction = "" if share is None else percent(share)
+    takes = f"which explains {fraction} of the misfit beyond noise{_skill(held_out)}."
     if len(sets) == 1:
-        text = f"Partly explained: {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes}"
+        text = f"Partly explained: {_named(chosen, effects)} ({' + '.join(chosen.names)}), {takes}"
     elif common:
         # what all explanations share comes first: it is what these data do tell
-        first = " and ".join(diagnosis.effects[n].sentence for n in common)
+        first = " and ".join(effects[n].sentence for n in common)
         rest = [" + ".join(n for n in s if n not in common) for s in sets]
         text = (
             f"Partly explained: {first} ({' + '.join(common)}), together with {_or(rest)}, which these data"
@@ -81,12 +97,9 @@ def _partly(diagnosis: Diagnosis, chosen: Explanation) -> str:
         others = _or([" + ".join(s) for s in sets[1:]])
         text = (
             f"Partly explained, by one of several causes that these data cannot separate: most likely"
-            f" {_named(diagnosis, chosen)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
+            f" {_named(chosen, effects)} ({' + '.join(chosen.names)}), {takes} The others: {others}."
         )
-    left, doubt = diagnosis.remainder, diagnosis.finding.doubt
-    if doubt:
-        return f"{text} Only noise remains, but the cause is not called found, since {doubt}."
-    return f"{text} {what_remains(left, diagnosis.unit)}" if left is not None else text
+    return text
 
 
 def _or(names: Sequence[str]) -> str:
@@ -94,12 +107,11 @@ def _or(names: Sequence[str]) -> str:
     return known[0] if len(known) == 1 else f"{', '.join(known[:-1])} or {known[-1]}"
 
 
-def _unexplained(diagnosis: Diagnosis) -> str:
+def _unexplained(nearest: Assessed | None) -> str:
     text = (
         "The measurements differ from the simulation by more than noise, and no cause in the library can be"
         " named."
     )
-    nearest = diagnosis.nearest
     if nearest is None:
         return f"{text} Inspect the residuals."
     names = " + ".join(nearest.explanation.names)
@@ -163,10 +175,9 @@ def _skill(held_out: HeldOut | None, takes: str = "") -> str:
     return f", and {takes}{part} in held-out measurements{but}"
 
 
-def _named(diagnosis: Diagnosis, chosen: Explanation) -> str:
+def _named(chosen: Explanation, effects: Mapping[str, Any]) -> str:
     parts = [
-        f"{diagnosis.effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}"
-        for c in chosen.candidates
+        f"{effects[c.effect].sentence}{'' if c.at == 'all' else f' ({c.at})'}" for c in chosen.candidates
     ]
     return " and ".join(parts) if len(parts) < 3 else f"{'; '.join(parts[:-1])}; and {parts[-1]}"
 

@@ -18,7 +18,8 @@ from math import factorial, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.resampling import Groups, Resampled, groups_of

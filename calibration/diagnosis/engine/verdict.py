@@ -185,7 +185,7 @@ class Diagnosis:
     def implausible(self) -> tuple[str, ...]:
         """A sentence for each material whose shear modulus no soft material has."""
         moduli = (self.extended or self.baseline).shear_modulus_Pa
-        return tuple(f"{name}: {said}" for name, g in moduli.items() if (said := implausible(g)))
+        return tuple(f"{name}: {why}" for name, g in moduli.items() if (why := implausible(g)))
 
     def causes(self) -> list[dict[str, Any]]:
         """One entry of diagnosis.json for each cause of the chosen explanation."""
@@ -211,7 +211,7 @@ class Diagnosis:
             "resampled_over": self.resampled,
             "baseline": self.baseline.to_json(unit[0]),
             "extended": self.extended.to_json(unit[0]) if self.extended else None,
-            "gain": None if self.held_out is None else _gain(self.held_out, unit),
+            "gain": None if self.held_out is None else _held_out(self.held_out, unit),
             "nearest": None if self.nearest is None else self._nearest(self.nearest),
             "remainder": None if self.remainder is None else _remainder(self.remainder, unit),
             "model_error": None if self.model_error is None else self.model_error.to_json(unit),
@@ -234,13 +234,23 @@ class Diagnosis:
         return {
             "causes": [{k: v for k, v in c.items() if k != "confidence"} for c in causes],
             "share": _interval(nearest.share),
-            "gain": None if nearest.held_out is None else _gain(nearest.held_out, self.unit),
+            "gain": None if nearest.held_out is None else _held_out(nearest.held_out, self.unit),
             "not_named_because": list(nearest.against),
         }
 
     def sentence(self) -> str:
         """The verdict in sentences (`sentences.sentence`)."""
-        return sentence(self)
+        return sentence(
+            self.finding,
+            self.chosen,
+            self.effects,
+            unit=self.unit,
+            share=self.share,
+            shares=self.shares,
+            held_out=self.held_out,
+            nearest=self.nearest,
+            remainder=self.remainder,
+        )
 
 
 def _interval(share: Interval) -> dict[str, float | None]:
@@ -251,7 +261,7 @@ def _interval(share: Interval) -> dict[str, float | None]:
     }
 
 
-def _gain(g: HeldOut, unit: tuple[str, float]) -> dict[str, Any]:
+def _held_out(g: HeldOut, unit: tuple[str, float]) -> dict[str, Any]:
     name, per_si = unit
 
     def figure(x: float) -> float | None:
@@ -305,8 +315,8 @@ def _causes(chosen: Explanation, effects: dict[str, Any], confidence: float) -> 
             "scope": c.at,
             "confidence": round(confidence, 4),
         }
-        said = getattr(c, "variant_name", "")  # which of an effect's forms, where its domain has several
-        found.append({**entry, "kind": said} if said else entry)
+        variant = getattr(c, "variant_name", "")  # name of the effect's form, if its domain has several
+        found.append({**entry, "kind": variant} if variant else entry)
     return found
 
 

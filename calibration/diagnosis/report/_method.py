@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calibration.diagnosis.engine.null import LackOfFit
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
 from calibration.diagnosis.engine.verdict import Diagnosis
 from calibration.diagnosis.report._evidence import FREQUENT, RARE
 from calibration.diagnosis.report._words import SUSPECT, p_text, pattern, tiny

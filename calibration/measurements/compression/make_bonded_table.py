@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import tisim
 from calibration.measurements.homogeneous import nominal_stress
+from tisim.io.whole import write_whole
 
 FILE = Path(__file__).with_name("_bonded_table.py")
 STRAINS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.63, 0.66, 0.69)
@@ -104,7 +105,7 @@ def main() -> None:
             for n, rows in laws.items()
         ),
     )
-    FILE.write_text(text, encoding="utf-8")
+    write_whole(FILE, text)
 
 
 def _row(values: NDArray[np.float64]) -> str:

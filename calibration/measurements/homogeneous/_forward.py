@@ -52,6 +52,20 @@ class Loading:
         return self.shear_modulus * sum(e.yields * a for e, a in self.acting)
 
     @property
+    def shifted(self) -> Array:
+        """Stretches of the record with the shifts by effects, shape (k,)."""
+        stretch = self.record.stretch.copy()
+        for e, a in self.acting:
+            if e.shift is not None:
+                stretch = stretch + e.shift(self.record.stretch, a, self.record)
+        return stretch
+
+    @property
+    def richer_fraction(self) -> float:
+        """Fraction of the richer law in the stress: sum of the amplitudes of effects that use that law."""
+        return sum(a for e, a in self.acting if e.richer)
+
+    @property
     def key(self) -> Hashable:
         """Cache key of the stress over the shear modulus."""
         effects = tuple((e.name, e.form, a) for e, a in self.acting)

@@ -255,16 +255,9 @@ class HomogeneousModel(MeasurementModel):
         )
 
     def _solved(self, loadings: Sequence[Loading]) -> list[Array]:
-        moved = []
-        for x in loadings:
-            s = x.record.stretch.copy()
-            for e, a in x.acting:
-                if e.shift is not None:
-                    s = s + e.shift(x.record.stretch, a, x.record)
-            moved.append(s)
         return yielding(
             lambda some, own: self._at_own_stretches([loadings[k] for k in some], own),
-            moved,
+            [x.shifted for x in loadings],
             [x.compliance for x in loadings],
         )
 
@@ -276,15 +269,15 @@ class HomogeneousModel(MeasurementModel):
     def _blended(
         self, loadings: Sequence[Loading], stretches: Sequence[Array], base: list[Array]
     ) -> list[Array]:
-        """(1 - a) times the baseline's stress plus a times the richer law's; a : amplitude of the effect."""
-        parts = [sum(a for e, a in x.acting if e.richer) for x in loadings]
-        some = [k for k, part in enumerate(parts) if part]
+        """(1 - a) times the baseline's stress plus a times the richer law's; a : `richer_fraction`."""
+        fractions = [x.richer_fraction for x in loadings]
+        some = [k for k, a in enumerate(fractions) if a]
         if not some:
             return base
         theirs = [replace(loadings[k], law=loadings[k].further) for k in some]
         rich = self._rich.over_modulus(theirs, [stretches[k] for k in some])
         for k, p in zip(some, rich, strict=True):
-            base[k] = (1.0 - parts[k]) * base[k] + parts[k] * p
+            base[k] = (1.0 - fractions[k]) * base[k] + fractions[k] * p
         return base
 
     def _effects_in(self, state: State, k: int) -> Acting:

@@ -50,7 +50,7 @@ def approach(trial: PokeTrial) -> float:
 
 
 def _site(trial: PokeTrial) -> tuple[float, float]:
-    """Where the indenter's axis meets the plane of the block's top [m]."""
+    """Contact point: intersection (x, y) of the indenter's axis with the plane of the block's top [m]."""
     way = (trial.start[2] - trial.block.size[2]) / abs(trial.direction[2])
     return trial.start[0] + way * trial.direction[0], trial.start[1] + way * trial.direction[1]
 

@@ -42,6 +42,7 @@ from calibration.measurements.outlines._photographs import (
 from calibration.measurements.outlines._predicted import photographed
 from calibration.measurements.outlines._scenes import BULK_RATIO, Scenes
 from calibration.measurements.outlines._solutions import SolutionCache
+from calibration.measurements.outlines._start import scanned_moduli
 from calibration.measurements.outlines.experiments import EXPERIMENTS, Photographs
 from calibration.measurements.outlines.fidelity import Fidelity
 from calibration.measurements.outlines.setup import Setup
@@ -51,7 +52,6 @@ from tisim import Beam, Result
 Array = NDArray[np.float64]
 
 MESH_LEFT = 0.2  # of the mesh's correction: one sd of a nuisance, of each trial
-SCAN = np.geomspace(3e5, 3e3, 9)  # shear moduli to begin from, stiff to soft [Pa]
 
 
 class OutlineModel(MeasurementModel):
@@ -148,31 +148,11 @@ class OutlineModel(MeasurementModel):
         return None if self._creep is None else self.start()
 
     def start(self) -> Array:
-        """Start coordinates (n,): for each specimen the best modulus of a coarse scan.
+        """Start coordinates (n,): for each specimen the best modulus of a coarse scan (`scanned_moduli`).
 
-        The scan goes from stiff to soft and ends after the best modulus, since beams that are far too soft
-        are expensive or have no equilibrium. ValueError if a specimen has no equilibrium.
+        ValueError if a specimen has no equilibrium.
         """
-        names = self.baseline.specimens
-        best, found = dict.fromkeys(names, np.inf), dict.fromkeys(names, float(SCAN[0]))
-        left = set(names)  # specimens that the last modulus brought nearer
-        for shear in SCAN:
-            state = State(u=self.baseline.start(dict.fromkeys(names, float(shear))))
-            cost = dict.fromkeys(left, 0.0)
-            seen = [p for p in self.records if p.specimen in left]
-            results = replace(self.solutions.surrogate, photographs=seen).solve([state])[0]
-            for p, r in zip(seen, results, strict=True):
-                cost[p.specimen] += (
-                    np.inf if r is None else float(np.sum(distances(projections_of(p, r)) ** 2))
-                )
-            left = {n for n in left if cost[n] < best[n]}
-            for n in left:
-                best[n], found[n] = cost[n], float(shear)
-            if not left:
-                break
-        if not all(np.isfinite(b) for b in best.values()):
-            raise ValueError("no shear modulus from 3 to 300 kPa gives every beam an equilibrium")
-        return self.baseline.start(found)
+        return self.baseline.start(scanned_moduli(self.baseline, self.records, self.solutions.surrogate))
 
     def update_nuisances(self, state: State, *, rough: bool = False) -> None:
         """Update nuisances and the correction of the mesh error at a state.

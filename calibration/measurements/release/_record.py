@@ -53,7 +53,7 @@ class Sampled:
 
 
 class OfMarkers(OfBeam):
-    """What a record of markers takes from its trial."""
+    """Attributes of a record of markers by its trial."""
 
     @property
     def name(self) -> str:

@@ -13,7 +13,8 @@ from diag_beams import SHEAR, beam_model, tiny
 import tisim
 from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.engine.advice import advice, advise
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.errors import InputError

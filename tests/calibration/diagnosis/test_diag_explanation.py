@@ -8,12 +8,8 @@ import numpy as np
 import pytest
 from fake_model import FakeModel, effect, library, noise, sigmas
 
-from calibration.diagnosis.engine.explanation import (
-    Explanation,
-    equivalent_explanations,
-    explain,
-    ranked_first,
-)
+from calibration.diagnosis.engine.explain import explain, ranked_first
+from calibration.diagnosis.engine.explanation import Explanation, equivalent_explanations
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.measurements._effect import Candidate

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from fake_model import FakeModel, effect, library, noise, sigmas, waves
 
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.multi_cause import with_third
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.search import Rules, fit_baseline, search

@@ -13,7 +13,7 @@ import pytest
 from fake_model import FakeModel, column, effect, library, noise, sigmas, waves
 
 import calibration
-from calibration.diagnosis.engine.explanation import explain
+from calibration.diagnosis.engine.explain import explain
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.partly import _dominant

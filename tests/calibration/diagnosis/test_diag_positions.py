@@ -10,7 +10,7 @@ import pytest
 from fake_model import ALONG, LENGTHS, MATERIALS, FakeModel, column, library, noise
 
 from calibration.diagnosis.engine import positions
-from calibration.diagnosis.engine.explanation import explain
+from calibration.diagnosis.engine.explain import explain
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.search import fit_baseline, search
 from calibration.measurements._effect import Candidate

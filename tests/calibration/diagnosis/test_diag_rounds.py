@@ -10,7 +10,7 @@ import pytest
 from fake_model import FakeModel, effect, library, noise, sigmas, waves
 
 from calibration.diagnosis import laws
-from calibration.diagnosis.engine import explanation, run
+from calibration.diagnosis.engine import explain, run
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.run import Searched, diagnose
 from calibration.diagnosis.engine.verdict import Diagnosis
@@ -134,13 +134,13 @@ def test_a_second_round_fits_no_set_of_causes_again(monkeypatch: pytest.MonkeyPa
         return model
 
     fitted: list[frozenset[Candidate]] = []
-    plain = explanation.fit
+    plain = explain.fit
 
     def counted(model: MeasurementModel, start: State, candidates: Sequence[Candidate]) -> Fit:
         fitted.append(frozenset(candidates))
         return plain(model, start, candidates)
 
-    monkeypatch.setattr(explanation, "fit", counted)
+    monkeypatch.setattr(explain, "fit", counted)
     diagnose_with_law(make, gain=False)
     assert any("ripple" in [c.effect for c in causes] for causes in fitted)
     assert len(fitted) == len(set(fitted)) > 3

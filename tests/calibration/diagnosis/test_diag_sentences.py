@@ -17,16 +17,19 @@ from calibration.measurements._effect import Candidate
 )
 def test_a_cause_that_is_certain_is_said_with_its_weight(grip: float, rest: str) -> None:
     shares = {"grip": grip, "void": 0.9 - grip}
-    diagnosis: Any = SimpleNamespace(
-        finding=SimpleNamespace(
-            verdict="ambiguous", equivalent=(("grip", "void"), ("grip", "tilt")), certain=("grip",)
-        ),
-        chosen=SimpleNamespace(candidates=[Candidate(effect=n) for n in shares], names=tuple(shares)),
-        effects={n: SimpleNamespace(sentence=f"there is a {n}") for n in ("grip", "void", "tilt")},
+    finding: Any = SimpleNamespace(
+        verdict="ambiguous", equivalent=(("grip", "void"), ("grip", "tilt")), certain=("grip",)
+    )
+    chosen: Any = SimpleNamespace(candidates=[Candidate(effect=n) for n in shares], names=tuple(shares))
+    verdict = sentence(
+        finding,
+        chosen,
+        {n: SimpleNamespace(sentence=f"there is a {n}") for n in ("grip", "void", "tilt")},
+        unit=("mm", 1e3),
         shares={Candidate(effect=n): Interval(value=s, low=s - 0.1, high=s + 0.1) for n, s in shares.items()},
     )
     part = f"{100 * grip:.0f} % [{100 * grip - 10:.0f}, {100 * grip + 10:.0f}]"
-    assert sentence(diagnosis) == (
+    assert verdict == (
         f"Found in part: there is a grip (grip, {part} of the misfit beyond noise)."
         f" {rest}, which these data cannot identify: void or tilt."
     )

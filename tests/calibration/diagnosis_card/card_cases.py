@@ -17,7 +17,8 @@ from calibration.diagnosis.effects.outlines import EFFECTS
 from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit
 from calibration.diagnosis.engine.held_out import HeldOut
-from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
+from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.screening import screen
 from calibration.diagnosis.engine.verdict import Numbers, Subject
 from calibration.experiment import Experiment, read
@@ -59,8 +60,8 @@ def diagnosis(
     baseline = _fit(u + 0.1, {})
     explanations: tuple[Explanation, ...] = ()
     if causes:
-        departure = LackOfFit(p_value=0.5, each={}, worst="everything")
-        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, lack_of_fit=departure),)
+        lack_of_fit = LackOfFit(p_value=0.5, each={}, worst="everything")
+        explanations = (Explanation(fit=_fit(u, dict(causes)), cost=0.0, lack_of_fit=lack_of_fit),)
     finding = Finding(
         verdict=verdict,  # type: ignore[arg-type]
         baseline=baseline,

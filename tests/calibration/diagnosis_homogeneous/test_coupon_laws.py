@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from diagnosis_coupon_cases import Array, coupon_model, experiment, ramps, trial
 
-from calibration.diagnosis.engine.explanation import explain
+from calibration.diagnosis.engine.explain import explain
 from calibration.diagnosis.engine.fitting import fit
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.laws import choose_law

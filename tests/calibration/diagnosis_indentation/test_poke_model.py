@@ -11,7 +11,7 @@ import pytest
 from poke_records import indentation_model, path, trial
 
 from calibration.diagnosis.effects.indentation.specimen import _faded
-from calibration.diagnosis.engine import explanation
+from calibration.diagnosis.engine import explain
 from calibration.diagnosis.engine.null import Null
 from calibration.diagnosis.engine.screening import screen
 from calibration.diagnosis.engine.search import fit_baseline, search
@@ -270,8 +270,8 @@ def test_a_fit_of_friction_begins_where_its_column_leads() -> None:
         raise ValueError
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(explanation, "fit", at)
-        explanation.explain(model, base, (both[1],), [-0.7], null)
+        patch.setattr(explain, "fit", at)
+        explain.explain(model, base, (both[1],), [-0.7], null)
     assert started[0] == pytest.approx(-0.6)
 
 

@@ -16,9 +16,11 @@ from release_models import bar_model
 from benchmarks.blind.release import Truth, write_bars
 from calibration.diagnosis.effects.release import EFFECTS
 from calibration.diagnosis.engine.advice import Advice, advice, advise
-from calibration.diagnosis.engine.explanation import Explanation, explain
+from calibration.diagnosis.engine.explain import explain
+from calibration.diagnosis.engine.explanation import Explanation
 from calibration.diagnosis.engine.fitting import Fit, fit
-from calibration.diagnosis.engine.null import LackOfFit, Null
+from calibration.diagnosis.engine.lack_of_fit import LackOfFit
+from calibration.diagnosis.engine.null import Null
 from calibration.experiment import read
 from calibration.measurements._design import Gauge
 from calibration.measurements._effect import Candidate
@@ -88,8 +90,8 @@ def supposed(model: ReleaseModel, base: State, name: str, amplitude: float) -> E
     """Explanation by a cause of this amplitude, without a fit to the data."""
     c = in_all(model, name)
     linear = model.linearise(replace(base, amplitudes={c: amplitude}), (c,))
-    departure = LackOfFit(p_value=0.5, each={}, worst="none")
-    return Explanation(fit=Fit(linear=linear, converged=True), cost=0.0, lack_of_fit=departure)
+    lack_of_fit = LackOfFit(p_value=0.5, each={}, worst="none")
+    return Explanation(fit=Fit(linear=linear, converged=True), cost=0.0, lack_of_fit=lack_of_fit)
 
 
 def test_what_an_experiment_promises_is_what_it_gives() -> None:

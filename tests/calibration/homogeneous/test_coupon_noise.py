@@ -15,7 +15,7 @@ from calibration.measurements._noise_known import POINTS_PER_FREEDOM
 from calibration.measurements.homogeneous._scatter import grows, slope
 from calibration.parameters import parametrisation
 from calibration.study import Calibration, FitOptions, calibrate, measurements
-from calibration.study.assessment import largest_by_chance, misfit_lacking
+from calibration.study.assessment import largest_by_chance
 
 SHEAR = 30e3
 
@@ -107,12 +107,13 @@ def test_the_largest_misfit_by_chance() -> None:
     )  # fmt: skip
     random = np.random.default_rng(0)
     alone = random.chisquare(50, 200_000) / 50
-    assert np.mean(alone > largest_by_chance(known)) == pytest.approx(1.35e-3, rel=0.2)
-    assert misfit_lacking(known)
+    assert np.mean(alone > largest_by_chance(known.freedom)) == pytest.approx(1.35e-3, rel=0.2)
+    assert known.assessed().lacking
     doubtful = replace(known, noise_freedom=10.0)
     drawn = (random.chisquare(50, 200_000) / 50) / (random.chisquare(10, 200_000) / 10)
-    assert np.mean(drawn > largest_by_chance(doubtful)) == pytest.approx(1.35e-3, rel=0.2)
-    assert not misfit_lacking(doubtful)
+    largest = largest_by_chance(doubtful.freedom, doubtful.noise_freedom)
+    assert np.mean(drawn > largest) == pytest.approx(1.35e-3, rel=0.2)
+    assert not doubtful.assessed().lacking
 
 
 def specimens(count: int, scatter: float, seed: int) -> Calibration:

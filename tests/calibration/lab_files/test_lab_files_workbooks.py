@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from calibration.errors import InputError
 from calibration.lab_files import _workbook, read_lab_file
-from calibration.lab_files._text import open_lab_file
+from calibration.lab_files._open import open_lab_file
 from calibration.new import app
 
 openpyxl = pytest.importorskip("openpyxl")

@@ -272,6 +272,6 @@ def test_chance_makes_a_lack_of_fit_in_one_of_740_fits() -> None:
     one = fit([trial("a", np.linspace(1.1, 1.6, 8), uniaxial(np.linspace(1.1, 1.6, 8)), stress_sd=100.0)])
     rng = np.random.default_rng(9)
     for points in (4, 11):
-        limit = largest_by_chance(replace(one, points=points))
+        limit = largest_by_chance(replace(one, points=points).freedom)
         drawn = rng.chisquare(points - 1, 400_000) / (points - 1)
         assert np.mean(drawn > limit) == pytest.approx(1.0 / 740.0, rel=0.2)

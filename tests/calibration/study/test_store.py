@@ -18,7 +18,7 @@ from calibration.parameters import parametrisation
 from calibration.study import Calibration, stopped, tasks_for
 from calibration.study._store import FitStore, locked, remove_fits
 from calibration.study.run import fit_task
-from tisim import laws
+from tisim.laws import _registry
 
 HEADER = {"format": 2, "seed": 1}
 
@@ -199,7 +199,7 @@ laws.register(replace(laws.get("yeoh"), name="yeoh-of-ones-own", pack=pack))
 def test_a_law_of_ones_own_that_has_changed_is_another_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(laws, "_ADDED", {})
+    monkeypatch.setattr(_registry, "_ADDED", {})
     table = {"stretch": np.linspace(1.0, 1.5, 8), "nominal_stress_kPa": np.linspace(0.0, 9.0, 8)}
     own = read(write_experiment(tmp_path / "data", [coupon_entry("pull", "a.csv")], tables={"a.csv": table}))
     (material,) = {t.material for t in own.trials}

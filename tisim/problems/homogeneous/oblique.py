@@ -12,8 +12,8 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
+from tisim.material_points import MaterialPoints
 from tisim.parallel.threads import one_thread
-from tisim.parts import MaterialPoints
 from tisim.problems._registry import OnStep, skip
 from tisim.problems._stops import stops_of
 from tisim.problems.homogeneous.solve import (

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    from tisim.material import Material
+from tisim import laws
+from tisim.material import Material
+from tisim.problems._checks import check_material
 
 Array = NDArray[np.float64]
 
@@ -38,11 +38,10 @@ class MaterialPoints:
     """
 
     def __init__(self, material: Material, count: int = 1) -> None:
-        from tisim import laws
+        # Taichi is imported when a material is first evaluated
         from tisim.discretisation.packed import features_of, history_of, pack
         from tisim.kernels.elements import evaluation_kernel
         from tisim.kernels.points import isochoric_kernels
-        from tisim.problems._checks import check_material
 
         check_material(material)
         law = laws.get(material.law)
