@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 NORMAL_STIFFNESS = 200.0
 # Factor of that stiffness, less 1, where the surface slides round the rod's edge (`sliding`): its penetration
 # is deepest there.
-STIFFER_SLIDING = 3.0
+STIFFER_SLIDING = 2.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
