@@ -292,9 +292,9 @@ def test_prediction_of_one_poke(run: Path, tmp_path: Path) -> None:
     [
         ("depth_mm: 2", "depth_mm: -2", "key depth_mm"),
         ("depth_mm: 2", "depth: 2", "key depth"),
-        ("site_mm: [5, -10]", "site_mm: [500, 0]", "key site_mm: expected x and y within"),
+        ("site_mm: [5, -10]", "site_mm: [500, 0]", "key site_mm: expected x within"),
         ("shape: shape-1", "shape: cat", "key shape: expected one of shape-0"),
-        ("softness: S1", "softness: S9", "key softness: expected one of S0, S1"),
+        ("softness: S1", "softness: S9", "key softness: expected one of S0, S1, got 'S9'"),
         ("softness: S1\n", "", "either softness or shear_modulus_kPa"),
     ],
 )
