@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -179,6 +180,21 @@ def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
         assert not answer.displacement.any()
         assert answer.force_interval is None
         assert (answer.inside, answer.distance) == (True, 0.0)  # this is exact, whatever was trained
+
+
+def test_just_after_contact_an_error_is_no_larger_than_the_travel(predictor: Predictor) -> None:
+    """The fitted error is extrapolated there, by a polynomial in ln(depth) that rises without bound."""
+    steep = replace(WIDTHS, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.1, 0.0])
+    touch = predictor.real_time(INTERIOR)
+    touch._intervals = steep
+    for depth in (1e-9, 1e-30):
+        answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=depth)
+        size = np.linalg.norm(answer.displacement, axis=1)
+        assert answer.radius is not None
+        np.testing.assert_allclose(answer.radius, size + depth, rtol=1e-5)
+    deep = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=2e-3)
+    assert deep.radius is not None
+    assert (deep.radius < 2e-3).all()  # not the bound
 
 
 @pytest.mark.parametrize(
