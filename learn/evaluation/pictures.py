@@ -238,8 +238,10 @@ def _section(
     from scipy.spatial import cKDTree
 
     ahead = np.linspace(-0.03, 0.03, 601)
-    away, column = cKDTree(points[:, :2]).query(start[:2] + ahead[:, None] * heading)
-    inside = rigid[column] & (away <= _strip(points) * np.sqrt(2))[:, None]
+    away, column = cKDTree(points[:, :2]).query(start[:2] + ahead[:, None] * heading, p=np.inf)
+    inside = (
+        rigid[column] & (np.asarray(away) <= _strip(points))[:, None]
+    )  # beside the block there is nothing
     half = 0.5 * (levels[1] - levels[0])
     upper = levels[inside.argmax(axis=1)] - half
     lower = levels[::-1][inside[:, ::-1].argmax(axis=1)] + half

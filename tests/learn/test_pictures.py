@@ -56,5 +56,12 @@ def test_a_section_of_the_inclusion_has_no_gaps(heading_deg: float) -> None:
     assert np.abs(ahead[hit]).max() == pytest.approx(10e-3, abs=2.3e-3)  # half a diagonal of a cell
     np.testing.assert_allclose(upper[hit], 8e-3, rtol=1e-9)
     np.testing.assert_allclose(lower[hit], 12e-3, rtol=1e-9)
-    # beside the block there is nothing
-    assert not np.isfinite(pictures._section(points, rigid, levels, np.array([0.09, 0, 0]), heading)[1]).any()
+
+
+def test_a_section_ends_where_the_block_does() -> None:
+    side = ((np.arange(32) + 0.5) / 32 - 0.5) * 0.1
+    points = np.stack([*np.meshgrid(side, side), np.zeros((32, 32))], axis=-1).reshape(-1, 3)
+    levels = (np.arange(128) + 0.5) / 128 * 0.032
+    rigid = np.ones((len(points), len(levels)), dtype=bool)
+    ahead, upper, _ = pictures._section(points, rigid, levels, np.array([0.04, 0, 0]), np.array([1.0, 0]))
+    assert ahead[np.isfinite(upper)].max() == pytest.approx(10e-3, abs=0.3e-3)
