@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -219,11 +220,16 @@ def test_folds_together(store: Path, run: Path, tmp_path: Path) -> None:
 def test_runs_together(run: Path, second: Path, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """Two runs as an ensemble: its own row of the tables, intervals, symmetry and mean predictions."""
     flags = ("--ensemble", "--no-baselines", "--no-clouds", "--threads", 1, "--out", tmp_path / "both")
-    done = _call(learn.evaluate.app, run, second, *flags)
+    namesake = shutil.copytree(second, tmp_path / run.name)  # the folders' names are the same
+    (tmp_path / "both").mkdir()
+    (tmp_path / "both" / "only.png").touch()  # of an earlier report, on one poke
+    done = _call(learn.evaluate.app, run, namesake, *flags)
     assert done.exit_code == 0, done.output
+    assert not (tmp_path / "both" / "only.png").exists()
     _assert_pictures(tmp_path / "both", learning=(BLUE, ORANGE))  # a curve of each run
     request.getfixturevalue("unrendered")
     tables = json.loads((tmp_path / "both" / "tables.json").read_text())
+    assert tables["runs"] == [str(run), str(namesake)]
     assert list(tables["tables"]) == [f"{MODEL}, 2 together", MODEL]
     assert tables["symmetry"][f"{MODEL}, 2 together, fold 0"]["displacement_mm"] < 1e-5
     assert list(tables["intervals"]) == [
@@ -234,7 +240,7 @@ def test_runs_together(run: Path, second: Path, tmp_path: Path, request: pytest.
     scene = tmp_path / "poke.yaml"
     scene.write_text(POKE)
     answers = []
-    for number, runs in enumerate(([run], [second], [run, second])):
+    for number, runs in enumerate(([run], [namesake], [run, namesake])):
         done = _call(learn.predict.app, *runs, scene, "--out", tmp_path / str(number))
         assert done.exit_code == 0, done.output
         answers.append(json.loads((tmp_path / str(number) / "prediction.json").read_text()))
