@@ -128,8 +128,9 @@ def _in_words(fault: ErrorDetails) -> tuple[tuple[Any, ...], str]:
         case "model_type" | "model_attributes_type" | "dict_type":
             return path, f"expected keys and values, got {value!r:.40}"
     text = str(fault["msg"]).removeprefix("Value error, ")
-    plain = fault["type"].startswith(("float", "int", "bool", "finite", "string"))
-    return path, f"{text}, got {value!r:.40}" if plain else text
+    if text.startswith("Input should be "):  # of the type of a value, or a bound
+        return path, f"expected {text.removeprefix('Input should be ')}, got {value!r:.40}"
+    return path, f"{text}, got {value!r:.40}" if fault["type"].startswith("string") else text
 
 
 def _keys(path: tuple[Any, ...], source: Any) -> list[str]:

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learn.evaluation.pictures import draw_prediction, encoded
 from learn.models import Pokes, Scene
 from learn.scene_file import PokeScene
 from learn.training.run_folder import write_whole
@@ -150,6 +149,8 @@ class PokePrediction:
 
     def picture(self) -> Any:
         """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
+        from learn.evaluation.pictures import draw_prediction  # matplotlib: half a second to import
+
         title = f"force {self._force_text}, {'inside' if self.inside else 'OUTSIDE'} the trained ranges"
         marks = None if self.asked is None else self.asked.points
         return draw_prediction(
@@ -171,6 +172,8 @@ class PokePrediction:
         )
 
     def _repr_html_(self) -> str:
+        from learn.evaluation.pictures import encoded
+
         rows = [("force", self._force_text), ("", self.verdict), *((c.name, _value(c)) for c in self.checks)]
         return f'{html_table(rows)}<img src="data:image/png;base64,{encoded(self.picture())}">'
 

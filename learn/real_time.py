@@ -25,7 +25,7 @@ from learn.errors import InputError
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
 from learn.quantities import covariates, cover_at, poke_values
-from learn.scene_file import kind_of, load_poke, scene_and_poke
+from learn.scene_file import kind_of, limits_text, load_poke, scene_and_poke, site_limits
 
 if TYPE_CHECKING:
     from learn.predictor import Predictor
@@ -120,6 +120,8 @@ class RealTime:
         self._intervals = predictor.intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
+        low, high = site_limits(self._setup)
+        self._low, self._high = low.tolist(), high.tolist()
         self._last: tuple[tuple[float, ...], _Contact] | None = None
 
     def __call__(
@@ -135,17 +137,17 @@ class RealTime:
         ----------
         site : intersection of the rod's axis with the rest surface, (x, y) [m].
         direction : unit vector of the push, (3,).
-        depth : travel since first contact [m]; at 0 or less the rod does not touch, and nothing moves.
+        depth : travel since first contact [m]; at 0 or less the rod does not touch, wherever it is, and
+            nothing moves.
 
         Raises
         ------
         InputError
-            If a value is not finite, the direction does not point into the block or is not a unit vector, or
-            `modulus` is not above 0.
+            If a value is not finite, the direction does not point into the block or is not a unit vector,
+            `modulus` is not above 0, or the rod touches beside the block or is as deep as the block is high.
         """
         push, depth = np.asarray(direction, dtype=np.float64), float(depth)
-        size = math.sqrt(float(push @ push))
-        if not (push.shape == (3,) and abs(size - 1.0) <= _ONE and push[2] < 0.0):
+        if push.shape != (3,) or not abs(math.sqrt(float(push @ push)) - 1.0) <= _ONE or not push[2] < 0.0:
             raise InputError(
                 f"direction: expected a unit vector that points down into the block, got {direction}"
             )
@@ -153,20 +155,23 @@ class RealTime:
             raise InputError(f"site: expected (x, y), got {tuple(site)}")
         if not (math.isfinite(depth) and math.isfinite(site[0]) and math.isfinite(site[1])):
             raise InputError(f"expected finite site and depth, got {tuple(site)} and {depth}")
-        if not 0.0 < self.modulus < math.inf:
-            raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {self.modulus}")
+        modulus = float(self.modulus)
+        if not 0.0 < modulus < math.inf:
+            raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {modulus}")
+        if depth > 0.0:
+            self._check_touch(site, depth)
         key = (*site, *push)
         if self._last is None or self._last[0] != key:
             self._last = key, self._contact(site, push)
         start, cover, away = self._last[1]
-        u, force = self._single(start, push, depth, self.modulus)
+        u, force = self._single(start, push, depth, modulus)
         values = poke_values(
             self._setup,
             self._interior,
             start=start,
             direction=push,
             depth=depth,
-            modulus=self.modulus,
+            modulus=modulus,
             cover=cover,
         )
         distance = math.nan if self._domain is None else self._domain.distance(values, self._law)
@@ -189,6 +194,17 @@ class RealTime:
             distance=distance,
             _radius_mm=radius_mm,
         )
+
+    def _check_touch(self, site: Sequence[float], depth: float) -> None:
+        """Refuse what is no indentation of the block: most often millimetres in the place of metres."""
+        (x, y), (x0, y0), (x1, y1) = site, self._low, self._high
+        if not (x0 <= x <= x1 and y0 <= y <= y1):
+            raise InputError(f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m")
+        height = self._setup.block_size[2]
+        if depth >= height:
+            raise InputError(
+                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m"
+            )
 
     def _contact(self, site: Sequence[float], push: Floats) -> _Contact:
         start = self._setup.first_touch(site, push)

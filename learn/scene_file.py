@@ -244,6 +244,19 @@ def kind_of(file: PokeScene, store: Store) -> str | None:
     return file.inclusion.kind if file.inclusion else shape_kind(store, file.shape or "")
 
 
+def site_limits(setup: Setup) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and largest (x, y) of a contact point [m], a radius of the indenter from the sides."""
+    reach = np.array(setup.block_size[:2]) / 2 - setup.rod_radius
+    return setup.middle - reach, setup.middle + reach
+
+
+def limits_text(setup: Setup, unit: Literal["mm", "m"]) -> str:
+    """The limits of a contact point in words."""
+    factor = 1e3 if unit == "mm" else 1.0
+    x, y = (f"{factor * a:.4g} to {factor * b:.4g}" for a, b in zip(*site_limits(setup), strict=True))
+    return f"x within {x} {unit} and y within {y} {unit} (the block less the indenter's radius)"
+
+
 def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
     size = np.array(setup.block_size) * 1e3
     middle = setup.middle * 1e3
@@ -254,15 +267,10 @@ def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
             f"{where}: key block_mm: expected sides of the indenter's diameter, {2 * radius:.4g} mm, or more,"
             f" got {size[0]:.4g} x {size[1]:.4g}"
         )
-    for k, value in enumerate(file.site_mm):
-        if not low[k] + radius <= value <= high[k] - radius:
-            bounds = ", ".join(
-                f"{a + radius:.4g} to {b - radius:.4g}" for a, b in zip(low, high, strict=True)
-            )
-            raise InputError(
-                f"{where}: key site_mm: expected x and y within {bounds} (the block less the rod's radius), "
-                f"got {value:g}"
-            )
+    lowest, highest = site_limits(setup)
+    for a, b, value in zip(lowest * 1e3, highest * 1e3, file.site_mm, strict=True):
+        if not a <= value <= b:
+            raise InputError(f"{where}: key site_mm: expected {limits_text(setup, 'mm')}, got {value:g}")
     if file.depth_mm >= size[2]:
         raise InputError(
             f"{where}: key depth_mm: expected less than the block's height of {size[2]:.4g} mm, "
@@ -306,7 +314,9 @@ def _modulus(file: PokeScene, store: Store, where: str) -> float:
         return file.shear_modulus_kPa * 1e3
     assert file.softness is not None
     if file.softness not in store.softness_names:
-        raise InputError(f"{where}: key softness: expected one of {', '.join(store.softness_names)}")
+        raise InputError(
+            f"{where}: key softness: expected one of {', '.join(store.softness_names)}, got {file.softness!r}"
+        )
     level = store.softness_names.index(file.softness)
     moduli = store.modulus[(store.softness == level) & store.done]
     if not len(moduli):
@@ -317,7 +327,7 @@ def _modulus(file: PokeScene, store: Store, where: str) -> float:
 def _geometry(file: PokeScene, store: Store, where: str) -> int:
     """The interior of the named shape, at the named level of softness if there is one."""
     if file.shape not in store.shapes:
-        raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}")
+        raise InputError(f"{where}: key shape: expected one of {', '.join(store.shapes)}, got {file.shape!r}")
     mine = store.shape == store.shapes.index(file.shape)
     if file.softness is not None and file.softness in store.softness_names:
         mine &= store.softness == store.softness_names.index(file.softness)

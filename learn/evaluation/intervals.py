@@ -34,6 +34,7 @@ from learn.quantities import COVARIATES
 Floats = NDArray[np.float64]
 _LEAST_MM = 1e-4
 _LEAST_FORCE = 1e-5  # least error of ln(force)
+LEAST_DEPTH = 1e-6  # [m]: keeps the logarithms finite at the moment of contact
 LEVEL = 0.9
 LEAST_POKES = 2
 PARTS = 5  # cross-validation folds of the pokes; the error scale of each is fitted to the others
@@ -96,14 +97,19 @@ class Intervals:
         covariates: Floats | None = None,
         distance: float | Floats = 0.0,
     ) -> Floats:
-        """Radius [mm] from the magnitude of the predicted displacement [m]; others as in `Predictions`."""
+        """Radius [mm] from the magnitude of the predicted displacement [m]; others as in `Predictions`.
+
+        No point of the surface moves further than the indenter has travelled, so that the error is never
+        larger than predicted displacement and depth together. This bounds the radius where the fitted error,
+        a polynomial in logarithms, is extrapolated: just after contact.
+        """
         fitted = _scale_mm(size, away, depth, self.scale)
         if covariates is not None:
             fitted = fitted * np.exp(covariates @ np.array(self.growth))
         radius = np.array(self.factors).take(_ring(away)) * _with_spread(fitted, spread)
         if (np.asarray(distance) > 0.0).any():
             radius = np.hypot(radius, np.sqrt(_unknown(distance)) * (1e3 * size))
-        return np.asarray(radius)
+        return np.asarray(np.minimum(radius, 1e3 * (size + depth)))
 
     def force_log(
         self,
@@ -288,7 +294,8 @@ def _with_spread(fitted: Floats, spread: float | Floats) -> Floats:
 
 def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floats, Floats, Floats]:
     """Logarithms of distance and depth over the rod's size, and of displacement over depth."""
-    return np.log1p(away / 2.5e-3), np.log(depth / 5e-3), np.log(size / depth + 1e-4)
+    deep = np.maximum(depth, LEAST_DEPTH)
+    return np.log1p(away / 2.5e-3), np.log(deep / 5e-3), np.log(size / deep + 1e-4)
 
 
 class _Scale(NamedTuple):

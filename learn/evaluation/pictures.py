@@ -162,10 +162,10 @@ def draw_prediction(
     strip = strip[np.argsort(offset[strip] @ heading)]
     rigid = scene.rigid[scene.rigid_index[pokes.geometry[0]]].numpy()
     along, levels = offset[strip] @ heading, scene.level_depth.numpy()
-    place, level = np.nonzero(rigid[strip] > 0)
-    cut.plot(
-        along[place] * 1e3, (top - levels[level]) * 1e3, "s", color="0.75", markersize=3, label="inclusion"
-    )
+    ahead, upper, lower = _section(points, rigid > 0, levels, start, heading)
+    if np.isfinite(upper).any():
+        height = (top - upper) * 1e3, (top - lower) * 1e3
+        cut.fill_between(ahead * 1e3, *height, color="0.75", linewidth=0, label="inclusion")
     cut.plot(along * 1e3, np.full(len(strip), top * 1e3), ":", color="0.5", label="rest surface")
     now = points[strip] + u[strip]
     cut.plot((now[:, :2] - start[:2]) @ heading * 1e3, now[:, 2] * 1e3, "C0.-", label="predicted surface")
@@ -225,6 +225,28 @@ def _cut(axis: Axes, points: Floats, truth: Floats, predicted: Floats, start: Fl
         axis.plot(along * 1e3, (place[:, 2] - start[2]) * 1e3, style, label=name, markersize=5)
     axis.set(title="cut along the push", xlabel="mm", ylabel="mm", xlim=(-30, 30))
     axis.legend(fontsize=8)
+
+
+def _section(
+    points: Floats, rigid: NDArray[np.bool_], levels: Floats, start: Floats, heading: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Vertical section of the inclusion through first contact, each place in the cell of its grid point.
+
+    Distances along the heading, and depths of the inclusion's upper and lower side there [m], (k,); NaN where
+    there is none. `rigid` is (n, levels), and `levels` are the depths of the levels' middles [m].
+    """
+    from scipy.spatial import cKDTree
+
+    ahead = np.linspace(-0.03, 0.03, 601)
+    away, column = cKDTree(points[:, :2]).query(start[:2] + ahead[:, None] * heading, p=np.inf)
+    inside = (
+        rigid[column] & (np.asarray(away) <= _strip(points))[:, None]
+    )  # beside the block there is nothing
+    half = 0.5 * (levels[1] - levels[0])
+    upper = levels[inside.argmax(axis=1)] - half
+    lower = levels[::-1][inside[:, ::-1].argmax(axis=1)] + half
+    none = ~inside.any(axis=1)
+    return ahead, np.where(none, np.nan, upper), np.where(none, np.nan, lower)
 
 
 def _strip(points: Floats) -> float:

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from learn.data import Batch, MemoryDataset, Setup, Store, make_batch
 from learn.data.clouds import SurfaceField
@@ -194,15 +195,12 @@ def symmetry_error(
 
 def _motions(rotations: int, *, about_normal: bool) -> list[tuple[Floats, Floats]]:
     """Rotations (3, 3) and translations (3,) [m]."""
-    from scipy.stats import special_ortho_group  # half a second to import
-
     if about_normal:
         quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
         return [(np.linalg.matrix_power(quarter, k + 1), np.zeros(3)) for k in range(3)]
     random = np.random.default_rng(0)
     return [
-        (special_ortho_group.rvs(3, random_state=random), random.uniform(-0.1, 0.1, 3))
-        for _ in range(rotations)
+        (Rotation.random(None, random).as_matrix(), random.uniform(-0.1, 0.1, 3)) for _ in range(rotations)
     ]
 
 

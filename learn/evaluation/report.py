@@ -23,6 +23,7 @@ from learn.training.run_folder import write_whole
 
 PAPER_METRICS = ("force", "mean", "max", "tip")
 _FEW_POKES = 10
+_PICTURES = {f"{name}.png" for name in ("learning", "only", "best", "median", "worst", "force")}
 Table = tuple[list[str], list[list[str]]]  # headings, rows
 
 # The paper's results table (arXiv 2509.10125's successor, "GNN prediction results"). Its data reach about 14
@@ -303,10 +304,11 @@ def write_report(found: Evaluation, folder: Path) -> None:
         for name, poke in ranked_pokes(found.predictions).items()
     }
     pictures["force"] = encoded(draw_forces(found.predictions))
-    logs = {run.folder.name: lines for run in found.runs if (lines := read_log(run.folder))}
+    named = dict(zip(_names(found), found.runs, strict=True))
+    logs = {name: lines for name, run in named.items() if (lines := read_log(run.folder))}
     learning = encoded(draw_learning(logs)) if logs else ""
     about = [
-        ("runs", ", ".join(str(run.folder.name) for run in found.runs)),
+        ("runs", ", ".join(named)),
         ("dataset", f"{store.location}, {store.law}, {store.pokes} pokes, uuid {store.uuid}"),
         (
             "tested on",
@@ -339,8 +341,16 @@ def write_report(found: Evaluation, folder: Path) -> None:
     files["tables.json"] = (json.dumps(_finite(as_json(found)), indent=1, allow_nan=False) + "\n").encode()
     files["report.html"] = html.encode()
     folder.mkdir(parents=True, exist_ok=True)
+    for name in _PICTURES - {*files}:  # of an earlier report
+        (folder / name).unlink(missing_ok=True)
     for name, content in files.items():
         write_whole(folder / name, content)
+
+
+def _names(found: Evaluation) -> list[str]:
+    """Names of the runs: of their folders, or the paths of these if two have the same name."""
+    names = [run.folder.name for run in found.runs]
+    return names if len(set(names)) == len(names) else [str(run.folder) for run in found.runs]
 
 
 def _finite(values: Any) -> Any:
@@ -361,7 +371,7 @@ def as_json(found: Evaluation) -> dict[str, Any]:
     return {
         "dataset": found.store.uuid,
         "law": found.store.law,
-        "runs": [str(run.folder.name) for run in found.runs],
+        "runs": _names(found),
         "test_pokes": found.pokes,
         "test_frames": found.frames,
         "tables": {m: {s: plain(v) for s, v in levels.items()} for m, levels in found.tables.items()},

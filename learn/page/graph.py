@@ -28,7 +28,7 @@ from torch import Tensor, nn
 
 from learn.data import Setup
 from learn.evaluation import Intervals
-from learn.evaluation.intervals import FORCE_UNKNOWN, LENGTH
+from learn.evaluation.intervals import FORCE_UNKNOWN, LEAST_DEPTH, LENGTH
 from learn.metrics import RING_EDGES_MM
 from learn.models import InvariantGnn, Scene
 from learn.models._encoder import Stencil
@@ -39,7 +39,6 @@ from learn.validity import RELATIVE_SLACK, Domain, unit_of
 
 INPUTS = ["poke", "base", "looked", "vectors", "clear", "layers", "soft", "about"]
 _FAR = 1e30  # limit of a range on a side that is not checked
-_LEAST_DEPTH = 1e-6  # [m]: keeps the logarithm finite for a rod that does not touch
 
 Inputs = dict[str, NDArray[np.float32] | NDArray[np.float64]]
 
@@ -142,7 +141,7 @@ class PagePart(nn.Module):
             beyond, distance = self.ranges(values, about[2])
             found += [values, beyond, distance]
         if self.intervals is not None:
-            deep = depth.clamp(min=_LEAST_DEPTH)
+            deep = depth.clamp(min=0.0)
             gap = 1e3 * self._gap(tip + deep * push, soft)
             covariates = torch.stack([about[3], gap, angle * (180 / math.pi)])
             found += self._intervals(u.double(), tip, deep, covariates, distance)
@@ -190,8 +189,9 @@ class PagePart(nn.Module):
         assert self.intervals is not None
         away = torch.sqrt((self.points - tip).square().sum(dim=1))
         size = torch.sqrt(u.square().sum(dim=1))
-        far, deep = torch.log1p(away / 2.5e-3), torch.log(depth / 5e-3).expand_as(away)
-        moved = torch.log(size / depth + 1e-4)
+        least = depth.clamp(min=LEAST_DEPTH)
+        far, deep = torch.log1p(away / 2.5e-3), torch.log(least / 5e-3).expand_as(away)
+        moved = torch.log(size / least + 1e-4)
         parts = [torch.ones_like(far), far, far * far, far * far * far, deep, deep * deep, deep * far]
         logs = torch.stack([*parts, moved, moved * moved], dim=1) @ self.scale
         logs = logs + covariates @ self.growth
@@ -200,6 +200,7 @@ class PagePart(nn.Module):
         unknown = 1 - torch.exp(-((distance / LENGTH) ** 2))
         inside = self.factors[ring] * torch.exp(logs)
         radius = torch.sqrt(inside.square() + unknown * (1e3 * size).square()) * 1e-3
+        radius = torch.minimum(radius, size + depth)
         fitted = self.intervals.force_scale * torch.exp(covariates @ self.force_growth)
         log = torch.sqrt((self.intervals.force * fitted) ** 2 + unknown * FORCE_UNKNOWN**2)
         return [torch.exp(log), radius]

@@ -7,11 +7,14 @@ accuracy and the range of validity. The name of a network stands wherever the fo
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 from learn.errors import InputError
 
 _HERE = Path(__file__).parent
+_CHECKPOINTS = ("best.pt", "last.pt")  # a folder with one of these holds a run
+_log = logging.getLogger(__name__)
 
 
 def names() -> list[str]:
@@ -20,16 +23,25 @@ def names() -> list[str]:
 
 
 def folder_of(name: str | Path) -> Path:
-    """Folder of a run: `name` itself, or of the network of this name if there is no such folder.
+    """Folder of a run: `name` itself, or of the network of this name.
 
-    InputError if there is neither.
+    A folder with the name of a network is used if it holds a run, which is logged as a warning; any other,
+    such as one of results, does not hide the network. InputError if there is neither folder nor network.
     """
-    path = Path(name)
-    if path.exists():
-        return path
-    if str(path) not in names():
+    folder = _find(Path(name))
+    if str(folder) in names():
+        _log.warning(
+            "%s: the run in this folder is used, not the network of this name that comes with tisim", folder
+        )
+    return folder
+
+
+def _find(path: Path) -> Path:
+    if str(path) in names() and not any((path / file).is_file() for file in _CHECKPOINTS):
+        return _HERE / path
+    if not path.exists():
         raise InputError(f"{path}: no such folder, expected that of a run, or one of {', '.join(names())}")
-    return _HERE / path
+    return path
 
 
 def is_shipped(folder: Path) -> bool:
@@ -39,4 +51,4 @@ def is_shipped(folder: Path) -> bool:
 
 def results_of(run: Path, what: str) -> Path:
     """Default folder for results of a run: `what` in its folder, NAME-`what` here for a network NAME."""
-    return Path(f"{run.name}-{what}") if is_shipped(folder_of(run)) else run / what
+    return Path(f"{run.name}-{what}") if is_shipped(_find(run)) else run / what

@@ -244,7 +244,7 @@ def test_the_block_of_ones_own_inclusion_is_stated(run: Path) -> None:
     assert "interval" not in far.verdict
     with pytest.raises(InputError, match="expected no key block_mm beside shape"):
         predictor.predict({**POKE, "inclusion": None, "shape": "shape-1", "block_mm": [100, 80, 30]})
-    with pytest.raises(InputError, match=r"site_mm: expected x and y within -47.5 to 47.5, -27.5"):
+    with pytest.raises(InputError, match=r"site_mm: expected x within -47.5 to 47.5 mm and y within -27.5"):
         predictor.predict({**POKE, "site_mm": [0, 30], "block_mm": [100, 60, 30]})
     named = predictor.predict({**POKE, "inclusion": None, "shape": "shape-2"})
     np.testing.assert_allclose(named.points, grid(SIZES[2]).reshape(-1, 3), atol=1e-15)

@@ -64,6 +64,20 @@ def test_help_needs_nothing_heavy(command: str) -> None:
     assert "--version" in done.stdout
 
 
+def test_what_draws_nothing_loads_no_drawing_library() -> None:
+    """A second of each start: matplotlib, and scipy.stats for the rotations of `learn.evaluate`."""
+    code = (
+        "import sys, learn\n"
+        "touch = learn.load('covers').real_time({'inclusion': {'kind': 'none'}, 'shear_modulus_kPa': 9})\n"
+        "touch(site=(0, 0), direction=(0, 0, -1), depth=1e-3)\n"
+        "from learn.evaluation.predictions import _motions\n"
+        "assert len(_motions(2, about_normal=False)) == 2\n"
+        "print(sorted({'matplotlib', 'scipy.stats', 'jinja2', 'onnx'} & set(sys.modules)))\n"
+    )
+    done = _python(code)
+    assert (done.returncode, done.stdout) == (0, "[]\n"), done.stderr
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_without_torch_each_command_says_what_to_install(command: str) -> None:
     arguments = {"predict": ["run", "poke.yaml"]}.get(command, ["run"])

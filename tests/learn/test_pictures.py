@@ -39,3 +39,29 @@ def test_a_cut_has_points_on_a_block_of_any_size(size: float) -> None:
     for angle in np.linspace(0.0, 3.0, 7):
         across = points[:, :2] @ [-np.sin(angle), np.cos(angle)]
         assert (np.abs(across) < pictures._strip(points)).sum() >= 16
+
+
+@pytest.mark.parametrize("heading_deg", [0.0, 40.0, 90.0])
+def test_a_section_of_the_inclusion_has_no_gaps(heading_deg: float) -> None:
+    """A rigid cylinder of 10 mm radius, 8 to 12 mm below the top: a rectangle in every vertical plane."""
+    side = ((np.arange(32) + 0.5) / 32 - 0.5) * 0.1
+    points = np.stack([*np.meshgrid(side, side), np.zeros((32, 32))], axis=-1).reshape(-1, 3)
+    levels = (np.arange(128) + 0.5) / 128 * 0.032
+    rigid = (np.hypot(*points[:, :2].T) <= 10e-3)[:, None] & (np.abs(levels - 10e-3) <= 2e-3)
+    turn = np.radians(heading_deg)
+    heading = np.array([np.cos(turn), np.sin(turn)])
+    ahead, upper, lower = pictures._section(points, rigid, levels, np.zeros(3), heading)
+    hit = np.isfinite(upper)
+    np.testing.assert_array_equal(hit, np.abs(ahead) <= np.abs(ahead[hit]).max())
+    assert np.abs(ahead[hit]).max() == pytest.approx(10e-3, abs=2.3e-3)  # half a diagonal of a cell
+    np.testing.assert_allclose(upper[hit], 8e-3, rtol=1e-9)
+    np.testing.assert_allclose(lower[hit], 12e-3, rtol=1e-9)
+
+
+def test_a_section_ends_where_the_block_does() -> None:
+    side = ((np.arange(32) + 0.5) / 32 - 0.5) * 0.1
+    points = np.stack([*np.meshgrid(side, side), np.zeros((32, 32))], axis=-1).reshape(-1, 3)
+    levels = (np.arange(128) + 0.5) / 128 * 0.032
+    rigid = np.ones((len(points), len(levels)), dtype=bool)
+    ahead, upper, _ = pictures._section(points, rigid, levels, np.array([0.04, 0, 0]), np.array([1.0, 0]))
+    assert ahead[np.isfinite(upper)].max() == pytest.approx(10e-3, abs=0.3e-3)

@@ -14,7 +14,7 @@ from learn.data.tables import TABLES
 from learn.errors import InputError
 from learn.evaluation import load_intervals, predict_part, summarise
 from learn.models import Scenes
-from learn.pretrained import folder_of, names
+from learn.pretrained import folder_of, names, results_of
 from learn.training import load_run, open_dataset
 from tests.learn.commands import call, refused
 from tests.learn.real_store import write_real_store
@@ -96,7 +96,28 @@ def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     )
 
 
-def test_a_folder_of_the_name_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_of_results_does_not_hide_the_network_of_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shipped = folder_of("covers")
+    for _ in range(2):  # the second finds the results of the first
+        done = call(app, "predict", "covers", SCENE, "--out", "covers")
+        assert done.exit_code == 0, done.output
+    assert folder_of("covers") == shipped
+    assert not caplog.records
+
+
+@pytest.mark.parametrize("checkpoint", ["best.pt", "last.pt"])
+def test_a_run_in_a_folder_of_the_name_is_used_with_a_warning(
+    checkpoint: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "covers").mkdir()
+    (tmp_path / "covers" / checkpoint).touch()
+    assert results_of(Path("covers"), "onnx") == Path("covers/onnx")
+    assert not caplog.records
     assert folder_of("covers") == Path("covers")
+    assert caplog.messages == [
+        "covers: the run in this folder is used, not the network of this name that comes with tisim"
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -173,12 +174,27 @@ def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
 
 
 def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
-    for depth in (0.0, -1e-3):
-        answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=depth)
+    for site, depth in (((0.0, 0.0), 0.0), ((0.0, 0.0), -1e-3), ((0.2, 0.0), -1e-3)):  # the last beside it
+        answer = touch(site=site, direction=(0.0, 0.0, -1.0), depth=depth)
         assert answer.force == 0.0
         assert not answer.displacement.any()
         assert answer.force_interval is None
         assert (answer.inside, answer.distance) == (True, 0.0)  # this is exact, whatever was trained
+
+
+def test_just_after_contact_an_error_is_no_larger_than_the_travel(predictor: Predictor) -> None:
+    """The fitted error is extrapolated there, by a polynomial in ln(depth) that rises without bound."""
+    steep = replace(WIDTHS, scale=[-3.0, -0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.1, 0.0])
+    touch = predictor.real_time(INTERIOR)
+    touch._intervals = steep
+    for depth in (1e-9, 1e-30):
+        answer = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=depth)
+        size = np.linalg.norm(answer.displacement, axis=1)
+        assert answer.radius is not None
+        np.testing.assert_allclose(answer.radius, size + depth, rtol=1e-5)
+    deep = touch(site=(0.0, 0.0), direction=(0.0, 0.0, -1.0), depth=2e-3)
+    assert deep.radius is not None
+    assert (deep.radius < 2e-3).all()  # not the bound
 
 
 @pytest.mark.parametrize(
@@ -191,6 +207,11 @@ def test_a_rod_that_does_not_touch_has_no_force(touch: RealTime) -> None:
         ({"site": (math.inf, 0.0)}, "finite site and depth"),
         ({"site": (0.0, 0.0, 0.032)}, r"site: expected \(x, y\), got"),
         ({"direction": (0.0, -1.0)}, "direction: expected a unit vector"),
+        ({"direction": ((0.0, 0.0, -1.0),)}, "direction: expected a unit vector"),
+        ({"site": (0.0, 0.048)}, r"site: expected x within -0.0475 to 0.0475 m and y .*got \(0, 0.048\) m"),
+        ({"site": (-0.048, 0.0)}, "site: expected x within"),
+        ({"site": (5.0, -10.0), "depth": 4.0}, r"site: expected .*got \(5, -10\) m"),  # millimetres
+        ({"depth": 4.0}, "depth: expected less than the block's height of 0.032 m, got 4 m"),
     ],
 )
 def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: str) -> None:

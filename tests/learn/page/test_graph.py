@@ -37,7 +37,7 @@ def test_it_answers_as_real_time_does(predictor: Predictor, content: Content, na
     inside = {"inclusion": {"kind": "none"}} if name == "none" else {"shape": name}
     touch = predictor.real_time({**inside, "shear_modulus_kPa": 12.0})
     random, outside = np.random.default_rng(1), 0
-    for depth in (5e-4, 1.5e-3, 2e-3, 6e-3):
+    for depth in (5e-4, 1.5e-3, 2e-3, 6e-3, 1e-7):
         x, y = random.uniform(-0.03, 0.03, 2)
         angle, heading, modulus = random.uniform((0.0, -3.0, 8e3), (0.6, 3.0, 4e4))
         touch.modulus = modulus
@@ -75,6 +75,7 @@ def test_a_rod_that_does_not_touch_has_no_force(content: Content) -> None:
     found = _ask(content, 0, [0.0, 0.0, 0.0, 0.0, 0.0, 1e4])
     assert float(found["force"]) == 0.0
     assert not found["displacement"].any()
+    assert not found["radius"].any()
     assert all(bool(torch.isfinite(value).all()) for value in found.values())
 
 
