@@ -165,7 +165,7 @@ def draw_prediction(
     ahead, upper, lower = _section(points, rigid > 0, levels, start, heading)
     if np.isfinite(upper).any():
         height = (top - upper) * 1e3, (top - lower) * 1e3
-        cut.fill_between(ahead * 1e3, *height, color="0.75", linewidth=0, label="inclusion")
+        cut.fill_between(ahead * 1e3, *height, color="0.75", linewidth=0, label="inclusion, by columns")
     cut.plot(along * 1e3, np.full(len(strip), top * 1e3), ":", color="0.5", label="rest surface")
     now = points[strip] + u[strip]
     cut.plot((now[:, :2] - start[:2]) @ heading * 1e3, now[:, 2] * 1e3, "C0.-", label="predicted surface")
@@ -239,9 +239,8 @@ def _section(
 
     ahead = np.linspace(-0.03, 0.03, 601)
     away, column = cKDTree(points[:, :2]).query(start[:2] + ahead[:, None] * heading, p=np.inf)
-    inside = (
-        rigid[column] & (np.asarray(away) <= _strip(points))[:, None]
-    )  # beside the block there is nothing
+    in_block = np.asarray(away) <= _strip(points)
+    inside = rigid[column] & in_block[:, None]
     half = 0.5 * (levels[1] - levels[0])
     upper = levels[inside.argmax(axis=1)] - half
     lower = levels[::-1][inside[:, ::-1].argmax(axis=1)] + half
