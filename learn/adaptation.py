@@ -126,9 +126,12 @@ class Adaptation:
             )
         passes = "1 epoch" if self.epochs == 1 else f"{self.epochs} epochs"
         how = f"fine-tuned for {passes}" if self.epochs else "only the unit of the force is corrected"
+        most = self.recipe.epochs
+        more = f"; it was the largest number tried, and --epochs {2 * most} may gain more"
+        hint = more if self.epochs and self.epochs == most else ""
         return (
             f"{how}: at contact points left out mean error {mean:.3g} -> {now['mean'].mean:.3g} mm, force"
-            f" error {force:.1%} -> {now['rel force'].mean:.1%}"
+            f" error {force:.1%} -> {now['rel force'].mean:.1%}{hint}"
         )
 
     @property

@@ -99,8 +99,8 @@ class RealTime:
         run, store = predictor.run, predictor.store
         if not isinstance(run.model, InvariantGnn):
             raise InputError(
-                f"{run.folder}: expected one run of invariant-gnn or invariant-gnn-small, in real time is no "
-                f"{run.recipe.model if not run.members else 'ensemble'}"
+                f"{run.folder}: in real time expected one run of invariant-gnn or invariant-gnn-small, got "
+                f"{f'one of {run.recipe.model}' if not run.members else 'several'}"
             )
         for key in ("site_mm", "depth_mm", "angle_deg", "heading_deg"):
             if key in interior:

@@ -31,6 +31,7 @@ Change = Callable[[PokeData], PokeData]
 
 COARSE = (
     TINY.replace("depth_mm: 30", "depth_mm: 2")
+    .replace("friction: 0.6", "friction: 0.3")  # the mesh depends on it
     .replace("own_sites: 2", "own_sites: 1")
     .replace("softness: [S0, S1]", "softness: [S0]\nrefinement: 0.5")
 )

@@ -92,6 +92,13 @@ def test_another_law_is_learned_from_six_pokes(found: Adaptation) -> None:
     assert found.epochs is not None
 
 
+def test_the_largest_number_of_epochs_is_said_to_be_that(found: Adaptation) -> None:
+    hint = "--epochs 4 may gain more"
+    assert found.recipe.epochs == 2
+    assert hint in replace(found, epochs=2).verdict
+    assert not any(hint in replace(found, epochs=fewer).verdict for fewer in (None, 0, 1))
+
+
 def test_each_contact_point_is_predicted_by_a_network_that_was_not_given_it(
     run: Run, body: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

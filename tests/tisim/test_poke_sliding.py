@@ -49,6 +49,13 @@ def _rings(mesh: Mesh) -> NDArray[np.float64]:
     return found
 
 
+def test_a_scene_is_meshed_for_its_friction() -> None:
+    material = tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3)
+    (result,) = tisim.simulate([tisim.Poke(material=material, friction=0.3, depth=1e-4, refinement=0.5)])
+    wanted = poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD, friction=0.3, refinement=0.5)
+    assert np.array_equal(result.mesh.nodes, wanted.nodes)
+
+
 @pytest.mark.parametrize(
     ("friction", "depths"),
     [
