@@ -1,6 +1,6 @@
 """What some pokes of a body of one's own give a surrogate: errors and intervals at contact points left out.
 
-    python -m studies.learning.own_body RUN DATASET...
+    python -m studies.learning.own_body RUN DATASET... [--epochs N]
 
 Of each DATASET, of one body, six contact points test; RUN is adapted to four and to all of the others.
 Prints the table of own-body.md, and writes own-body.png.
@@ -18,7 +18,7 @@ import torch
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from learn.adaptation import Adaptation, adapt
+from learn.adaptation import Adaptation, adapt, adapt_recipe
 from learn.data import MemoryDataset, Store, contact_points, open_store
 from learn.data.folds import frames_once
 from learn.evaluation import Intervals, coverage, load_intervals, predict_part, summarise
@@ -85,8 +85,12 @@ def _line(
     )
 
 
-def lines_of(run: Run, store: Store) -> list[Line]:
-    """One line for the run as it is, and one for each number of contact points given."""
+def lines_of(run: Run, store: Store, *, epochs: int | None = None) -> list[Line]:
+    """One line for the run as it is, and one for each number of contact points given.
+
+    epochs : the largest number of epochs to choose among; None for that of `learn.adapt`.
+    """
+    recipe = adapt_recipe(run, {} if epochs is None else {"epochs": epochs})
     name = Path(store.location).stem
     rows = frames_once(store)
     keys = contact_points(store, store.frame_poke[rows])
@@ -101,7 +105,7 @@ def lines_of(run: Run, store: Store) -> list[Line]:
     for given in GIVEN:
         mine = rows[np.isin(keys, pool[:given])]
         began = time.perf_counter()
-        found: Adaptation = adapt(run, store, rows=mine)
+        found: Adaptation = adapt(run, store, rows=mine, recipe=recipe)
         seconds = time.perf_counter() - began
         assert found.intervals is not None
         after = summarise(found.after)
@@ -171,11 +175,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("run", type=Path)
     parser.add_argument("datasets", nargs="+")
+    parser.add_argument("--epochs", type=int, help="largest number of epochs (learn.adapt's default: 16)")
     parser.add_argument("--threads", type=int, default=1)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     run = load_run(arguments.run)
-    bodies = [lines_of(run, open_store(dataset)) for dataset in arguments.datasets]
+    bodies = [lines_of(run, open_store(path), epochs=arguments.epochs) for path in arguments.datasets]
     print(HEADS, "| --- " * 11 + "|", sep="\n")
     for lines in bodies:
         for line in lines:
