@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import tisim
 from tisim.bodies import Block, Rod
-from tisim.mesh import Mesh
+from tisim.mesh import Mesh, MeshError
 from tisim.mesh.indentation import poke_mesh, sliding
 from tisim.problems.indentation.kind import contact_version
 
@@ -40,6 +40,12 @@ def test_only_a_surface_that_slides_has_the_new_contact_and_mesh() -> None:
     assert rings[1][rings[1] <= 2.5] == pytest.approx(rings[0][rings[0] <= 2.5])
     assert rings[0][rings[0] > 2.5] == pytest.approx([2.75, 3.0, 3.25, 3.5])
     assert rings[1][rings[1] > 2.5] == pytest.approx([2.65, 2.8, 3.15, 3.5], abs=2e-3)
+
+
+@pytest.mark.parametrize("friction", [-0.1, float("nan")])
+def test_a_coefficient_below_0_is_refused(friction: float) -> None:
+    with pytest.raises(MeshError, match="friction: expected a coefficient of 0 or more, got"):
+        poke_mesh(block=BLOCK, site=(0.0, 0.0), rod=ROD, friction=friction)
 
 
 def _rings(mesh: Mesh) -> NDArray[np.float64]:

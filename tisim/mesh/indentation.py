@@ -242,6 +242,8 @@ class _Grids:
             raise MeshError(f"poke direction: {np.degrees(tilt):.0f} degrees from straight down; at most 45")
         if not 0.5 <= refinement <= 6.0:
             raise MeshError(f"refinement: expected 0.5 to 6, got {refinement}")
+        if not friction >= 0.0:
+            raise MeshError(f"friction: expected a coefficient of 0 or more, got {friction}")
         if not (np.isfinite(rod.radius) and rod.radius > 0.0):
             raise MeshError(f"rod radius: expected a length above 0 [m], got {rod.radius}")
         self.half = 0.5 * np.array(size[:2])
