@@ -110,7 +110,7 @@ class Predictor:
         InputError
             If the run's model has no such form, a key is wrong, or the inclusion does not fit the block.
         """
-        return RealTime(self, interior)
+        return RealTime(self.run, self.store, interior, domain=self.domain, intervals=self.intervals)
 
     def _answer(self, poke: PokeScene, given: PokeInput, asked: AskedPoints | None) -> PokePrediction:
         setup, interior, scene, pokes = given

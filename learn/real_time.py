@@ -15,20 +15,21 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from learn.data import Store
 from learn.errors import InputError
+from learn.evaluation import Intervals
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
 from learn.quantities import covariates, cover_at, poke_values
 from learn.scene_file import kind_of, limits_text, load_poke, scene_and_poke, site_limits
-
-if TYPE_CHECKING:
-    from learn.predictor import Predictor
+from learn.training import Run
+from learn.validity import Domain
 
 Floats = NDArray[np.float64]
 _ONE = 1e-6  # tolerance on the length of a direction
@@ -80,7 +81,8 @@ class RealTime:
 
     Parameters
     ----------
-    predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    run, store, domain, intervals : those of the predictor. The run is one of invariant-gnn or
+        invariant-gnn-small, trained without time.
     interior : keys of `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion, block_mm,
         softness or shear_modulus_kPa, and law.
 
@@ -95,8 +97,15 @@ class RealTime:
         If the run has another model, a key is wrong, or the inclusion does not fit the block.
     """
 
-    def __init__(self, predictor: Predictor, interior: Mapping[str, Any]) -> None:
-        run, store = predictor.run, predictor.store
+    def __init__(
+        self,
+        run: Run,
+        store: Store,
+        interior: Mapping[str, Any],
+        *,
+        domain: Domain | None,
+        intervals: Intervals | None,
+    ) -> None:
         if not isinstance(run.model, InvariantGnn):
             raise InputError(
                 f"{run.folder}: in real time expected one run of invariant-gnn or invariant-gnn-small, got "
@@ -114,10 +123,10 @@ class RealTime:
         with torch.no_grad():
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
-        self._domain = predictor.domain
+        self._domain = domain
         self._known = self._domain is None or self._domain.knows(kind_of(file, store))
         self._law = file.law
-        self._intervals = predictor.intervals
+        self._intervals = intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
         low, high = site_limits(self._setup)
