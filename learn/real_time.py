@@ -22,17 +22,26 @@ import torch
 from numpy.typing import NDArray
 
 from learn.data import Store
-from learn.errors import InputError
+from learn.errors import ImpossiblePokeError, InputError
 from learn.evaluation import Intervals
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
-from learn.quantities import covariates, cover_at, poke_values
-from learn.scene_file import kind_of, limits_text, load_poke, scene_and_poke, site_limits
+from learn.quantities import Obstacle, covariates, cover_at, obstacle, poke_values
+from learn.scene_file import (
+    STEEPEST,
+    in_inclusion,
+    kind_of,
+    limits_text,
+    load_poke,
+    scene_and_poke,
+    site_limits,
+)
 from learn.training import Run
 from learn.validity import Domain
 
 Floats = NDArray[np.float64]
-_ONE = 1e-6  # tolerance on the length of a direction
+_ONE = 1e-6  # tolerance on the length of a direction, and on its vertical component
+_LEAST_COSINE = math.cos(math.radians(STEEPEST))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -131,7 +140,9 @@ class RealTime:
         self._points = np.ascontiguousarray(self.points.T)
         low, high = site_limits(self._setup)
         self._low, self._high = low.tolist(), high.tolist()
+        self._least_cover = float(self._interior.soft.min())
         self._last: tuple[tuple[float, ...], _Contact] | None = None
+        self._way: tuple[tuple[float, ...], Obstacle | None] | None = None
 
     def __call__(
         self,
@@ -151,9 +162,13 @@ class RealTime:
 
         Raises
         ------
+        ImpossiblePokeError
+            If the indenter touches beside the block, is as deep as the block is high, is inclined by more
+            than 45 degrees, or its tip has come to the inclusion, as `Predictor.predict` refuses them.
+            `reason` names which.
         InputError
-            If a value is not finite, the direction does not point into the block or is not a unit vector,
-            `modulus` is not above 0, or the rod touches beside the block or is as deep as the block is high.
+            If a value is not finite, the direction does not point into the block or is not a unit vector, or
+            `modulus` is not above 0.
         """
         push, depth = np.asarray(direction, dtype=np.float64), float(depth)
         if push.shape != (3,) or not abs(math.sqrt(float(push @ push)) - 1.0) <= _ONE or not push[2] < 0.0:
@@ -168,11 +183,13 @@ class RealTime:
         if not 0.0 < modulus < math.inf:
             raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {modulus}")
         if depth > 0.0:
-            self._check_touch(site, depth)
+            self._check_touch(site, push, depth)
         key = (*site, *push)
         if self._last is None or self._last[0] != key:
             self._last = key, self._contact(site, push)
         start, cover, away = self._last[1]
+        if depth > self._least_cover:  # most pokes are not as deep as the thinnest cover
+            self._check_way(key, start, push, depth)
         u, force = self._single(start, push, depth, modulus)
         values = poke_values(
             self._setup,
@@ -204,16 +221,32 @@ class RealTime:
             _radius_mm=radius_mm,
         )
 
-    def _check_touch(self, site: Sequence[float], depth: float) -> None:
+    def _check_touch(self, site: Sequence[float], push: Floats, depth: float) -> None:
         """Refuse what is no indentation of the block: most often millimetres in the place of metres."""
         (x, y), (x0, y0), (x1, y1) = site, self._low, self._high
         if not (x0 <= x <= x1 and y0 <= y <= y1):
-            raise InputError(f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m")
+            raise ImpossiblePokeError(
+                f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m", "site"
+            )
         height = self._setup.block_size[2]
         if depth >= height:
-            raise InputError(
-                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m"
+            raise ImpossiblePokeError(
+                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m", "depth"
             )
+        if -push[2] < _LEAST_COSINE - _ONE:
+            raise ImpossiblePokeError(
+                f"direction: expected at most {STEEPEST:g} degrees from the vertical, "
+                f"got {math.degrees(math.acos(-push[2])):.4g}",
+                "angle",
+            )
+
+    def _check_way(self, key: tuple[float, ...], start: Floats, push: Floats, depth: float) -> None:
+        """Refuse a tip that has come to the inclusion; `key` is that of the contact."""
+        if self._way is None or self._way[0] != key:
+            self._way = key, obstacle(self._setup, self._interior, start, push)
+        met = self._way[1]
+        if met is not None and depth >= met.depth:
+            raise ImpossiblePokeError(f"depth: {in_inclusion(met, 'm')}, got {depth:.4g} m", "inclusion")
 
     def _contact(self, site: Sequence[float], push: Floats) -> _Contact:
         start = self._setup.first_touch(site, push)

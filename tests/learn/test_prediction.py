@@ -104,7 +104,7 @@ def predictor(run: Path) -> Predictor:
         (
             "depth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1",
             "depth_mm: 5\n" + SPHERE.replace("[0, 0, 8]", "[5, -10, 20]"),
-            "key depth_mm: expected less, the tip would end within the rigid inclusion",
+            "key depth_mm: expected less than 4.25 mm, where the tip would be within the rigid inclusion",
         ),
         ("shape: shape-1\n", "", "expected either shape or inclusion"),
     ],

@@ -12,7 +12,7 @@ import pytest
 import torch
 
 import learn
-from learn.errors import InputError
+from learn.errors import ImpossiblePokeError, InputError
 from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN
 from learn.predictor import Predictor
@@ -208,16 +208,74 @@ def test_just_after_contact_an_error_is_no_larger_than_the_travel(predictor: Pre
         ({"site": (0.0, 0.0, 0.032)}, r"site: expected \(x, y\), got"),
         ({"direction": (0.0, -1.0)}, "direction: expected a unit vector"),
         ({"direction": ((0.0, 0.0, -1.0),)}, "direction: expected a unit vector"),
-        ({"site": (0.0, 0.048)}, r"site: expected x within -0.0475 to 0.0475 m and y .*got \(0, 0.048\) m"),
-        ({"site": (-0.048, 0.0)}, "site: expected x within"),
-        ({"site": (5.0, -10.0), "depth": 4.0}, r"site: expected .*got \(5, -10\) m"),  # millimetres
-        ({"depth": 4.0}, "depth: expected less than the block's height of 0.032 m, got 4 m"),
     ],
 )
 def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: str) -> None:
     plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
-    with pytest.raises(InputError, match=words):
+    with pytest.raises(InputError, match=words) as refused:
         touch(**{**plain, **poke})  # type: ignore[arg-type]
+    assert not isinstance(refused.value, ImpossiblePokeError)
+
+
+@pytest.mark.parametrize(
+    ("poke", "reason", "words"),
+    [
+        (
+            {"site": (0.0, 0.048)},
+            "site",
+            r"site: expected x within -0.0475 to 0.0475 m and y .*got \(0, 0.048\) m",
+        ),
+        ({"site": (-0.048, 0.0)}, "site", "site: expected x within"),
+        ({"site": (5.0, -10.0), "depth": 4.0}, "site", r"site: expected .*got \(5, -10\) m"),  # millimetres
+        ({"depth": 4.0}, "depth", "depth: expected less than the block's height of 0.032 m, got 4 m"),
+        ({"direction": _way(46, 30)}, "angle", "at most 45 degrees from the vertical, got 46$"),
+        ({"depth": 0.015}, "inclusion", "within the rigid .* under 0.0103 m of cover there, got 0.015 m"),
+    ],
+)
+def test_poses_that_no_poke_can_have_are_refused_with_their_reason(
+    predictor: Predictor, poke: dict[str, object], reason: str, words: str
+) -> None:
+    lump = {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 14]}
+    touch = predictor.real_time({"inclusion": lump, "softness": "S1"})
+    plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
+    with pytest.raises(ImpossiblePokeError, match=words) as refused:
+        touch(**{**plain, **poke})  # type: ignore[arg-type]
+    assert refused.value.reason == reason
+    assert touch(**plain).force > 0.0  # type: ignore[arg-type]  # it answers the next
+
+
+@pytest.mark.parametrize(
+    ("x", "angle", "free"),
+    [
+        (0.0, 0.0, 10.0),  # onto the top of the sphere
+        (-4.0, 0.0, 11.1),  # onto its flank
+        (-12.0, 0.0, None),  # beside it
+        (-12.0, 45.0, 16.4),  # from the side into its flank: beyond it, the tip would have passed through it
+        (6.0, 45.0, None),  # away from it
+    ],
+)
+def test_no_tip_goes_into_an_inclusion_nor_through_it(
+    predictor: Predictor, x: float, angle: float, free: float | None
+) -> None:
+    """The same depths [mm] are refused in real time and in files; `free` by geometry, to 1 mm."""
+    sphere = {"kind": "sphere", "radius_mm": 8, "centre_mm": [12, -9, 14]}
+    interior = {"inclusion": sphere, "softness": "S1"}
+    touch, push = predictor.real_time(interior), _way(angle, 0)
+    touches, goes_in = (8.0, 20.0, 28.0), ()
+    if free is not None:
+        touches, goes_in = (free - 2.0, free - 1.0), (free + 1.0, 20.0, 28.0)
+    for depth in (*touches, *goes_in):
+        scene = {**interior, "site_mm": [12 + x, -9], "depth_mm": depth, "angle_deg": angle}
+        site = ((12 + x) * 1e-3, -9e-3)
+        if depth in touches:
+            predictor.predict(scene)
+            touch(site=site, direction=push, depth=depth * 1e-3)
+            continue
+        with pytest.raises(InputError, match=r"key depth_mm: .* within the rigid inclusion"):
+            predictor.predict(scene)
+        with pytest.raises(ImpossiblePokeError, match=r"depth: .* within the rigid inclusion"):
+            touch(site=site, direction=push, depth=depth * 1e-3)
+    touch(site=(-0.030, 0.030), direction=push, depth=0.020)  # elsewhere nothing is in the way
 
 
 @pytest.mark.parametrize("modulus", [0.0, -1e3, math.nan, math.inf])
