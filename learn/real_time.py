@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from learn.data import Store
 from learn.errors import ImpossiblePokeError, InputError
@@ -37,10 +38,11 @@ from learn.scene_file import (
     site_limits,
 )
 from learn.training import Run
-from learn.validity import Domain
+from learn.validity import Check, Domain, unknown_checks, verdict
 
 Floats = NDArray[np.float64]
 _ONE = 1e-6  # tolerance on the length of a direction, and on its vertical component
+MAIN = ("depth_mm", "angle_deg", "cover_mm")  # quantities whose trained ranges `repr` shows
 _LEAST_COSINE = math.cos(math.radians(STEEPEST))
 
 
@@ -50,6 +52,7 @@ class Answer:
 
     Attributes
     ----------
+    depth : travel since first contact [m].
     displacement : displacement of the surface's points [m], shape (n, 3), float32.
     force : magnitude of the force on the indenter [N].
     force_interval : 90 % interval of the force [N]; None without intervals or without contact.
@@ -58,12 +61,26 @@ class Answer:
         not known.
     """
 
+    depth: float
     displacement: NDArray[np.float32]
     force: float
     force_interval: tuple[float, float] | None
     inside: bool | None
     distance: float
     _radius_mm: Callable[[Floats], Floats] | None
+    _checks: Callable[[], list[Check]]
+
+    @cached_property
+    def checks(self) -> list[Check]:
+        """Comparison of each quantity with its trained range, made when it is first read."""
+        return self._checks()
+
+    @property
+    def verdict(self) -> str:
+        """The domain of validity in words (`learn.validity.verdict`)."""
+        if not self.depth > 0.0:
+            return "No contact: nothing moves."
+        return verdict(self.checks, intervals=self.force_interval is not None)
 
     @cached_property
     def radius(self) -> Floats | None:
@@ -133,8 +150,11 @@ class RealTime:
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
         self._domain = domain
-        self._known = self._domain is None or self._domain.knows(kind_of(file, store))
+        self._kind = kind_of(file, store)
+        self._known = self._domain is None or self._domain.knows(self._kind)
         self._law = file.law
+        self._network = f"{run.folder.name}, {run.recipe.model}"
+        self._inclusion = file.shape or _described(file.inclusion)
         self._intervals = intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
@@ -143,6 +163,19 @@ class RealTime:
         self._least_cover = float(self._interior.soft.min())
         self._last: tuple[tuple[float, ...], _Contact] | None = None
         self._way: tuple[tuple[float, ...], Obstacle | None] | None = None
+
+    def __repr__(self) -> str:
+        length, width, height = (1e3 * side for side in self._setup.block_size)
+        rows = {
+            "network": self._network,
+            "inclusion": self._inclusion,
+            "block": f"{length:.4g} x {width:.4g} x {height:.4g} mm, {len(self.points)} points on top",
+            "shear modulus": f"{1e-3 * self.modulus:.4g} kPa",
+            "intervals": "none" if self._intervals is None else f"{100 * self._intervals.level:.0f} %",
+            "trained": "not known" if self._domain is None else ", ".join(self._domain.texts(MAIN)),
+            "threads": f"{torch.get_num_threads()} of torch",
+        }
+        return "RealTime(\n" + "".join(f"  {key}: {value}\n" for key, value in rows.items()) + ")"
 
     def __call__(
         self,
@@ -212,13 +245,17 @@ class RealTime:
             radius_mm = partial(
                 self._intervals.radius_at_mm, away=away, depth=depth, covariates=near, distance=known
             )
+        checked = values, self._kind, self._law
+        checks = partial(unknown_checks if self._domain is None else self._domain.check, *checked)
         return Answer(
+            depth=depth,
             displacement=u,
             force=force,
             force_interval=interval,
             inside=depth <= 0.0 or (None if math.isnan(distance) else self._known and distance == 0.0),
             distance=distance,
             _radius_mm=radius_mm,
+            _checks=checks,
         )
 
     def _check_touch(self, site: Sequence[float], push: Floats, depth: float) -> None:
@@ -253,3 +290,17 @@ class RealTime:
         r = self._points - start[:, None]
         cover = cover_at(self._setup, self._interior, start, push)
         return _Contact(start, cover, np.sqrt((r * r).sum(axis=0)))
+
+
+def _described(inclusion: BaseModel | None) -> str:
+    """Keys and values of an inclusion: "sphere, radius_mm 8, centre_mm (0, 0, 17)"."""
+    keys = {} if inclusion is None else inclusion.model_dump()
+    return ", ".join(_text(key, value) for key, value in keys.items())
+
+
+def _text(key: str, value: Any) -> str:
+    if key == "kind":
+        return "no inclusion" if value == "none" else str(value)
+    numbers = value if isinstance(value, tuple) else (value,)
+    text = ", ".join(f"{number:.4g}" for number in numbers)
+    return f"{key} {f'({text})' if isinstance(value, tuple) else text}"
