@@ -171,7 +171,7 @@ class RealTime:
             "inclusion": self._inclusion,
             "block": f"{length:.4g} x {width:.4g} x {height:.4g} mm, {len(self.points)} points on top",
             "shear modulus": f"{1e-3 * self.modulus:.4g} kPa",
-            "intervals": "none" if self._intervals is None else f"{100 * self._intervals.level:.0f} %",
+            "intervals": "none" if self._intervals is None else self._intervals.text,
             "trained": "not known" if self._domain is None else ", ".join(self._domain.texts(MAIN)),
             "threads": f"{torch.get_num_threads()} of torch",
         }

@@ -146,7 +146,7 @@ def test_it_shows_what_it_is_of(predictor: Predictor) -> None:
         "  inclusion: sphere, radius_mm 8, centre_mm (0, 0, 17)",
         "  block: 100 x 100 x 32 mm, 1024 points on top",
         "  shear modulus: 12 kPa",
-        "  intervals: 90 %",
+        "  intervals: 90 %, calibrated on 20 indentations",
     ]
     assert "  trained: depth 1 to 2 mm, angle " in repr(touch)
     assert "  threads: 1 of torch" in repr(touch)
