@@ -212,6 +212,7 @@ def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> No
     assert done.exit_code == 0, done.output
     flat = " ".join(done.output.split())
     assert "Far outside the trained ranges: depth (9 mm; trained: 1 to 2 mm; beyond by 699 % of the" in flat
+    assert flat.count("depth (9 mm") + flat.count("depth 9 mm") == 1  # said once
     answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
     assert answer["inside_training"] is False
     depth = answer["domain"]["depth_mm"]

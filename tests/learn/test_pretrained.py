@@ -89,6 +89,20 @@ def test_results_of_one_are_not_written_into_the_package(
     refused(call(app, "evaluate", "covers"), "covers.zarr: no dataset there")
 
 
+@pytest.mark.parametrize("command", ["predict", "evaluate", "export"])
+def test_a_file_is_no_folder_to_write_nor_one_of_a_run(command: str, tmp_path: Path) -> None:
+    file = tmp_path / "notes.txt"
+    file.write_text("notes")
+    scene = (SCENE,) if command == "predict" else ()
+    for run, out, words in (
+        ("covers", file, f"--out {file}: expected the name of a folder, this is a file"),
+        (file, tmp_path / "out", f"{file}: expected the folder of a run, or one of covers; this is a file"),
+    ):
+        refused(call(app, command, run, *scene, "--out", out), words)
+    assert file.read_text() == "notes"
+    assert list(tmp_path.iterdir()) == [file]
+
+
 def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     body = write_store(tmp_path / "b.zarr", shapes=1, softness=("S1",), sites=3, frames=2)

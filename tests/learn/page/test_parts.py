@@ -106,7 +106,7 @@ def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None
     (tmp_path / "locked.zip").write_bytes(locked)
     cases = {
         tmp_path / "locked.zip": "expected the parts of a page",
-        tmp_path / "none.zip": "expected the parts of a page",
+        tmp_path / "none.zip": "no such file, expected the parts of a page",
         tmp_path / "text.zip": "expected the parts of a page",
         _without(saved, tmp_path / "less.zip", "poke.onnx", None): "expected the parts of a page",
         _without(saved, tmp_path / "more.zip", "page.json", json.dumps({**stated, "x": 1}).encode()): "key x",
