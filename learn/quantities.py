@@ -98,7 +98,7 @@ def covariates(setup: Setup, interior: Interior, *, start: Floats, direction: Fl
 
 
 def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
-    """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
+    """Least thickness of the soft tissue [m] within an indenter's radius of the contact site."""
     site = setup.contact_site(start, direction)
     x, y = setup.points[:, 0] - site[0], setup.points[:, 1] - site[1]
     square = x * x + y * y

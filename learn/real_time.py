@@ -6,7 +6,9 @@
 >>> answer = touch(site=(5e-3, -10e-3), direction=(0, 0, -1), depth=4e-3)  # each millisecond
 >>> answer.force, answer.force_interval, answer.displacement, answer.inside
 
-Lengths here are in metres. `torch.set_num_threads(1)` is the fastest if the machine has other work.
+Lengths here are in metres. A pose that no indentation can have, such as a tip in the inclusion, raises
+`learn.errors.ImpossiblePokeError`, whose `reason` a loop can read. `torch.set_num_threads(1)` is the
+fastest if the machine has other work.
 """
 
 from __future__ import annotations
@@ -188,9 +190,9 @@ class RealTime:
 
         Parameters
         ----------
-        site : intersection of the rod's axis with the rest surface, (x, y) [m].
+        site : intersection of the indenter's axis with the rest surface, (x, y) [m].
         direction : unit vector of the push, (3,).
-        depth : travel since first contact [m]; at 0 or less the rod does not touch, wherever it is, and
+        depth : travel since first contact [m]; at 0 or less the indenter does not touch, wherever it is, and
             nothing moves.
 
         Raises

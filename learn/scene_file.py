@@ -159,7 +159,7 @@ class PokeScene(_Strict):
 
     @property
     def clock(self) -> tuple[float, float, float] | None:
-        """Time [s], the rod's speed and its speed of approach [m/s]; None without time."""
+        """Time [s], the indenter's speed and its speed of approach [m/s]; None without time."""
         time, speed, approach = self._clock
         if time is None or speed is None or approach is None:
             return None
