@@ -12,7 +12,9 @@ import tisim
 from tisim.discretisation.body import Discretisation
 from tisim.mesh.indentation import poke_mesh
 from tisim.nonlinear.newton import Outcome
+from tisim.problems.indentation import course as by_course
 from tisim.problems.indentation import damped
+from tisim.problems.indentation import solve as by_depth
 from tisim.problems.indentation import system as contact
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.damped import LONGEST, solve_step
@@ -114,6 +116,40 @@ def test_a_long_step_is_refused_without_a_motion(
         assert (refused, outcome.iterations) == (Status.NOT_CONVERGED, 20)
     else:
         assert (refused, outcome.iterations) == (None, 27)
+
+
+@pytest.mark.parametrize("deep", [False, True])
+def test_a_state_that_nearly_converges_is_refused_if_it_is_too_deep_in_the_rod(
+    mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch, deep: bool
+) -> None:
+    system, block = start(mesh)
+    system.move_to(0.0003)
+    nearly = Outcome(system.previous, Status.NOT_CONVERGED, 1e-3, 20)
+    monkeypatch.setattr(CondensedBlock, "solve", lambda *_, **__: nearly)
+    monkeypatch.setattr(damped, "too_deep", lambda *_: deep)
+    options = {"tolerance": 1e-4, "kept": True, "length": 2.0 * LONGEST, "between": 2e-3}
+    outcome, refused = solve_step(system, block, system.previous, **options)  # type: ignore[arg-type]
+    assert outcome is nearly
+    assert refused is (Status.NOT_CONVERGED if deep else None)
+
+
+@pytest.mark.parametrize(
+    ("owner", "options"),
+    [(by_depth, {}), (by_course, {"course": tisim.Course().ramp(to=0.0008, duration=1.0)})],
+)
+def test_each_step_states_its_length(
+    owner: Any, options: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lengths: list[float] = []
+
+    def noted(*arguments: Any, length: float, **others: Any) -> tuple[Outcome, Status | None]:
+        lengths.append(length)
+        return solve_step(*arguments, length=length, **others)
+
+    monkeypatch.setattr(owner, "solve_step", noted)
+    assert solve_poke(replace(SCENE, **options)).ok
+    assert sum(lengths) == pytest.approx(0.0008)
+    assert min(lengths) > 0.0
 
 
 @pytest.mark.parametrize(("residual", "first"), [(5.9e-3, 0.00033), (6.1e-3, 0.0003)])
