@@ -182,9 +182,11 @@ def test_commands_know_the_laws_of_files_that_the_environment_names(tmp_path: Pa
         )
 
     assert f"{laws.all_names()[-1]}, gent" in run("-m", "tisim").stdout
+    # a chain of each law: one process needs the file
     script = (
-        "import tisim; m = tisim.material_from_moduli('gent', shear_modulus=1e4, bulk_modulus=1e6);"
-        "scenes = [tisim.Coupon(material=m, stretches=(2.0 + 0.01 * k,)) for k in range(9)];"
+        "import tisim; laws = ['gent'] * 4 + ['neo-hookean'] * 5;"
+        "some = [tisim.material_from_moduli(law, shear_modulus=1e4, bulk_modulus=1e6) for law in laws];"
+        "scenes = [tisim.Coupon(material=m, stretches=(2.0 + 0.01 * k,)) for k, m in enumerate(some)];"
         "print({r.ok for r in tisim.simulate(scenes, workers=2)})"
     )
     done = run("-c", script)
