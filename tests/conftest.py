@@ -37,7 +37,7 @@ LONG = (
     "tisim/test_time_in_scenes.py",
     "tisim/test_law_registry.py",
     "calibration/study/test_fit_command.py",
-    "learn/test_evaluation.py",
+    "learn/evaluation/test_report.py",
     "tisim/test_poke_back.py",
     "tisim/test_poke_cover.py",
     "calibration/indentation/test_poke_mesh_error.py",

@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 
 from factory import _build
 from factory._build import BuildProgress, build_dataset
-from factory._execution import run_poke
+from factory._execution import SIMULATOR, run_poke
 from factory._planned import PlannedPoke
 from factory._record import Outcome
 from factory._staging import building_folder
@@ -29,6 +29,7 @@ __all__ = ["unrendered"]
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
+STANDIN = "tests.factory.standin:simulate"
 
 # run in its own process, as a user would, but with the stand-in for tisim
 COMMAND = """
@@ -110,7 +111,7 @@ def standin_build(serial: None) -> Builder:
     del serial
 
     def run(plan: Plan, target: Path, **options: object) -> _build.Built:
-        return build_dataset(plan, target, **{"simulator": "tests.factory.standin:simulate", **options})  # type: ignore[arg-type]
+        return build_dataset(plan, target, **{"simulator": STANDIN, **options})  # type: ignore[arg-type]
 
     return run
 
@@ -120,11 +121,19 @@ def _four_pokes(folder: Path) -> Plan:
     return make_plan(load_recipe(str(folder / "tiny.yaml")), "ogden")
 
 
-def build_here(plan: Plan, target: Path, **options: Any) -> None:
-    """Build with the stand-in in this process, for fixtures of a wider scope than a test."""
+def build_here(plan: Plan, target: Path, *, simulator: str = STANDIN, **options: Any) -> None:
+    """Build in this process, with the stand-in by default, for fixtures of a wider scope than a test."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(_build, "run_local", _run_here)
-        build_dataset(plan, target, simulator="tests.factory.standin:simulate", **options)
+        build_dataset(plan, target, simulator=simulator, **options)
+
+
+def simulate_here(recipe: str, folder: Path) -> Path:
+    """Store of the Ogden law of a recipe's text, in this folder, simulated by tisim in this process."""
+    (folder / "recipe.yaml").write_text(recipe)
+    plan = make_plan(load_recipe(folder / "recipe.yaml"), "ogden")
+    build_here(plan, folder / "store.zarr", simulator=SIMULATOR, workers=1)
+    return folder / "store.zarr"
 
 
 @pytest.fixture(scope="session")

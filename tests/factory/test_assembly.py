@@ -11,17 +11,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from factory import _assembly, _build
+from factory import _assembly
 from factory._assembly import NotCheckedError, check_assembly, check_poke, nodal_forces
-from factory._build import build_dataset
-from factory._execution import run_poke
 from factory._interior import Interior
 from factory._poke_data import PokeData
-from factory.plan import make_plan
 from factory.reader import Dataset, open_dataset
-from factory.recipe import load_recipe
 from factory.verify import app
-from tests.factory.conftest import TINY, run_app
+from tests.factory.conftest import TINY, run_app, simulate_here
 from tisim import Block, Rod
 from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.inclusions.sphere import SphereInclusion
@@ -40,13 +36,7 @@ COARSE = (
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One poke to 2 mm, simulated by tisim."""
-    folder = tmp_path_factory.mktemp("assembly")
-    (folder / "coarse.yaml").write_text(COARSE)
-    plan = make_plan(load_recipe(folder / "coarse.yaml"), "ogden")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_build, "run_local", lambda pokes, **_: (run_poke(poke) for poke in pokes))
-        build_dataset(plan, folder / "store.zarr", workers=1)
-    return folder / "store.zarr"
+    return simulate_here(COARSE, tmp_path_factory.mktemp("assembly"))
 
 
 @pytest.mark.parametrize("law", ["ogden", "stable-neo-hookean", "st-venant-kirchhoff", "neo-hookean"])

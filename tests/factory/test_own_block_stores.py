@@ -20,9 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import factory.card
-from factory import _assembly, _build, _figures, open_dataset, verify_dataset
-from factory._build import build_dataset
-from factory._execution import run_poke
+from factory import _assembly, _figures, open_dataset, verify_dataset
 from factory._figures import draw_preview
 from factory._record import Trace
 from factory._sampling import grid_points, level_depths, profiles
@@ -35,7 +33,7 @@ from factory.release import app as release_app
 from factory.verify import app as verify_app
 from learn.data import open_store
 from learn.evaluation.predictions import interpolation_error_mm
-from tests.factory.conftest import Builder, digest, run_app
+from tests.factory.conftest import Builder, digest, run_app, simulate_here
 
 # simulated in seconds by tisim itself: a drawn shape, a stated one, and one that states its block
 SMALL = """
@@ -60,13 +58,7 @@ shapes:
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three shapes at two material levels, built by tisim."""
-    folder = tmp_path_factory.mktemp("blocks")
-    (folder / "small.yaml").write_text(SMALL)
-    plan = make_plan(load_recipe(folder / "small.yaml"), "ogden")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_build, "run_local", lambda pokes, **_: (run_poke(poke) for poke in pokes))
-        build_dataset(plan, folder / "store.zarr", workers=1)
-    return folder / "store.zarr"
+    return simulate_here(SMALL, tmp_path_factory.mktemp("blocks"))
 
 
 def test_the_arrays_of_a_geometry_are_those_of_its_mesh(small: Path) -> None:

@@ -187,13 +187,13 @@ def test_the_energy_of_a_softened_material_is_what_it_gives_back() -> None:
         tisim.material_from_moduli("neo-hookean", shear_modulus=2e4, bulk_modulus=2e6),
         softening=tisim.OgdenRoxburgh(r=2.0, m=2e3, beta=0.1),
     )
-    path = np.concatenate([np.linspace(1.0, 1.5, 101), np.linspace(1.5, 1.0, 101)[1:]])
+    path = np.concatenate([np.linspace(1.0, 1.5, 71), np.linspace(1.5, 1.0, 71)[1:]])
     found = tisim.simulate(tisim.Coupon(material=softened, stretches=tuple(path)))
     assert found.nominal_stress is not None
     assert found.dissipated is not None
     mean = 0.5 * (found.nominal_stress[1:] + found.nominal_stress[:-1])
     volume = float(np.ptp(found.mesh.nodes[:, 0])) ** 3
     work = volume * np.concatenate([[0.0], np.cumsum(mean * np.diff(path))])
-    for k in (0, 50, 100, 150, 200):
+    for k in (0, 35, 70, 105, 140):
         stored = tisim.fields(found, k).energy
-        assert stored == pytest.approx(work[k] - found.dissipated[k], abs=2e-4 * work[100])
+        assert stored == pytest.approx(work[k] - found.dissipated[k], abs=2e-4 * work[70])

@@ -98,7 +98,7 @@ def course(steps: int) -> tuple[Array, Array]:
 def test_the_viscous_block_is_the_stored_one_with_steps_extrapolated_to_none() -> None:
     """The error falls with the square of the step, so that two step lengths give the limit."""
     wanted = [np.array(STORED["viscosity"][name]) for name in ("displacement", "force")]
-    coarse, fine = course(8), course(16)
+    coarse, fine = course(6), course(12)
     for rough, better, exact in zip(coarse, fine, wanted, strict=True):
         size = np.abs(exact).max()
         assert np.abs(fine_error := better - exact).max() < 1e-3 * size

@@ -14,23 +14,22 @@ from tisim.problems.indentation.solve import solve_poke
 SHEAR, BULK = 20e3, 600e3
 
 
-def poked(law: str, *, element: Any = "default") -> tuple[tisim.Result, tisim.Result]:
-    """Results at 0.04 and 2 mm depth, at 20 degrees on a coarse mesh."""
+SHALLOW, DEEP = 0.04e-3, 2e-3
+
+
+def poked(law: str, depth: float, *, element: Any = "default") -> tisim.Result:
+    """Result at a depth, at 20 degrees on a coarse mesh."""
     angle = np.radians(20.0)
-    shallow, deep = (
-        solve_poke(
-            tisim.Poke(
-                material=tisim.material_from_moduli(law, shear_modulus=SHEAR, bulk_modulus=BULK),
-                direction=(float(np.sin(angle)), 0.0, -float(np.cos(angle))),
-                depth=depth,
-                frame_spacing=depth / 2,
-                refinement=0.5,
-                element=element,
-            )
+    return solve_poke(
+        tisim.Poke(
+            material=tisim.material_from_moduli(law, shear_modulus=SHEAR, bulk_modulus=BULK),
+            direction=(float(np.sin(angle)), 0.0, -float(np.cos(angle))),
+            depth=depth,
+            frame_spacing=depth / 2,
+            refinement=0.5,
+            element=element,
         )
-        for depth in (0.00004, 0.002)
     )
-    return shallow, deep
 
 
 def size(result: tisim.Result) -> float:
@@ -40,18 +39,17 @@ def size(result: tisim.Result) -> float:
 
 @pytest.fixture(scope="module")
 def neo_hookean() -> tuple[float, float]:
-    shallow, deep = poked("neo-hookean")
-    return size(shallow), size(deep)
+    return size(poked("neo-hookean", SHALLOW)), size(poked("neo-hookean", DEEP))
 
 
 @pytest.mark.parametrize("law", [name for name in laws.names() if name != "neo-hookean"])
 def test_a_law_pokes(law: str, neo_hookean: tuple[float, float]) -> None:
     # this law softens in compression: beyond 1 mm it converges on linear hexahedra only
     element = "hex8" if law == "st-venant-kirchhoff" else "default"
-    shallow, deep = poked(law, element=element)
+    shallow, deep = (poked(law, depth, element=element) for depth in (SHALLOW, DEEP))
     if element == "hex8":
-        neo_hookean = size(poked("neo-hookean", element=element)[0]), neo_hookean[1]
-    for found, depth in ((shallow, 0.00004), (deep, 0.002)):
+        neo_hookean = size(poked("neo-hookean", SHALLOW, element=element)), neo_hookean[1]
+    for found, depth in ((shallow, SHALLOW), (deep, DEEP)):
         assert found.ok
         assert found.load[-1] == pytest.approx(depth)
         assert np.linalg.norm(found.rod_force - found.support_force, axis=1).max() < 0.01 * size(found)

@@ -23,9 +23,11 @@ def scenes() -> list[tisim.Scene]:
     return [
         tisim.Beam(material=SOFT, length=0.05, axial_element_size=0.01, radial_elements=1),
         tisim.Coupon(material=SOFT, stretches=(1.2, 1.5)),
-        tisim.Poke(material=SOFT, depth=0.001, refinement=0.6),
+        tisim.Poke(material=SOFT, depth=0.001, refinement=0.5),
         tisim.Beam(
-            material=tisim.material_from_moduli("ogden", shear_modulus=15e3, bulk_modulus=1.5e6), length=0.05
+            material=tisim.material_from_moduli("ogden", shear_modulus=15e3, bulk_modulus=1.5e6),
+            length=0.05,
+            axial_element_size=0.01,
         ),
         tisim.Coupon(material=SOFT, mode="planar", stretches=(0.8,)),
     ]

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _folders import coupon_entry, write_experiment
+from made_experiment import experiment as made
 
 import calibration
-from calibration.experiment.model import CouponTrial, Experiment, MaterialBelief
+from calibration.experiment.model import CouponTrial
 from calibration.measurements._noise_known import POINTS_PER_FREEDOM
 from calibration.measurements.homogeneous._scatter import grows, slope
 from calibration.parameters import parametrisation
@@ -25,15 +26,7 @@ def neo_hookean(stretch: np.ndarray) -> np.ndarray:
 
 
 def fitted(*trials: CouponTrial) -> Calibration:
-    experiment = Experiment(
-        name="made",
-        folder=Path(),
-        notes="",
-        materials={"M": MaterialBelief(name="M")},
-        trials=trials,
-        digest="",
-    )
-    data = measurements(experiment, "M", parametrisation("neo-hookean"))
+    data = measurements(made(*trials), "M", parametrisation("neo-hookean"))
     return calibrate(data, options=FitOptions(leave_one_out=False))
 
 

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from made_experiment import experiment as made
 from numpy.typing import NDArray
 
 import calibration
 from calibration.diagnosis import catalogue, diagnose, kinds, model_of
 from calibration.errors import InputError
-from calibration.experiment import CouponTrial, Experiment, MaterialBelief
+from calibration.experiment import CouponTrial, Experiment
 from calibration.measurements import _kinds
 from calibration.measurements._baseline import Baseline
 from calibration.measurements._basis import Columns, legendre
@@ -74,17 +75,6 @@ def pulled(softening: float) -> Experiment:
         id="pull", material="A", mode="uniaxial", stretch=stretch, stress=clean + noise, stress_sd=100.0
     )
     return made(trial)
-
-
-def made(*trials: object) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path("made"),
-        notes="",
-        materials={"A": MaterialBelief(name="A")},
-        trials=trials,  # type: ignore[arg-type]
-        digest="0" * 64,
-    )
 
 
 def test_an_effect_of_an_unknown_kind_is_refused() -> None:

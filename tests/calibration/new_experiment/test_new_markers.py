@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from _folders import marker_columns, outline_columns
+from _folders import beam_entry, marker_columns, outline_columns
 from typer.testing import CliRunner
 
 from calibration.experiment import BeamTrial, PokeTrial, read
@@ -23,17 +23,7 @@ from calibration.new._answers import BeamAnswers, CaptureAnswers, CouponAnswers,
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "datasets" / "lab-files"
-BAR = {
-    "id": "bar",
-    "kind": "beam",
-    "material": "gel",
-    "section": {"circle": {"radius_mm": 10.0, "radius_sd_mm": 0.05}},
-    "free_length_mm": 100.0,
-    "free_length_sd_mm": 0.2,
-    "grip_length_mm": 20.0,
-    "supports": "clamped-free",
-    "gravity_m_s2": [0.0, 0.0, -9.81],
-}
+BAR = beam_entry("bar", material="gel")
 MARKED = {
     "markers": "tracked.csv",
     "marker_positions_mm": {"tip": [100.0, 0.0, 0.0], "mid.1": [50.0, 0.0, 10.0]},

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 from _folders import coupon_entry, write_experiment
+from made_experiment import experiment as made
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from calibration.experiment import read
-from calibration.experiment.model import CouponTrial, Experiment, MaterialBelief
+from calibration.experiment.model import CouponTrial
 from calibration.measurements._baseline import Baseline
 from calibration.measurements.compression.model import CompressionModel
 from calibration.parameters import parametrisation
@@ -36,17 +37,6 @@ def uniaxial(stretch: Array, modulus: float = G, exponent: float = 2.0) -> Array
 
 def trial(name: str, stretch: Array, stress: Array, **more: Any) -> CouponTrial:
     return CouponTrial(id=name, material="M", mode="uniaxial", stretch=stretch, stress=stress, **more)
-
-
-def made(*trials: CouponTrial) -> Experiment:
-    return Experiment(
-        name="made",
-        folder=Path(),
-        notes="",
-        materials={"M": MaterialBelief(name="M")},
-        trials=trials,
-        digest="",
-    )
 
 
 def fit(trials: list[CouponTrial], law: str = "neo-hookean", terms: int = 1) -> Calibration:

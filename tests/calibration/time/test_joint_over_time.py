@@ -47,20 +47,24 @@ def hertz(depth: Array) -> Array:
     return np.asarray(16.0 / 3.0 * np.sqrt(RADIUS) * np.maximum(depth, 0.0) ** 1.5)
 
 
-def simulated(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
-    del self
-    depth = np.linspace(2e-5, 1.5e-3, 60)
-    made = Curve(
+def straight(depth: NDArray[np.float64], along: NDArray[np.float64], *, round_tip: bool) -> Curve:
+    """Elastic curve without a force across, beyond all depths of the records."""
+    return Curve(
         depth=depth,
-        along=hertz(depth),
-        across=np.zeros((60, 2)),
+        along=along,
+        across=np.zeros((len(depth), 2)),
         reached=2e-3,
         finer=2e-3,
-        round_tip=True,
+        round_tip=round_tip,
         status="converged",
         core_seconds=0.0,
     )
-    return [made for _ in requests]
+
+
+def simulated(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
+    del self
+    depth = np.linspace(2e-5, 1.5e-3, 60)
+    return [straight(depth, hertz(depth), round_tip=True) for _ in requests]
 
 
 def pushed() -> PokeTrial:
@@ -94,17 +98,7 @@ def flat(self: CurveCache, requests: Sequence[CurveRequest]) -> list[Curve]:
     along = PchipInterpolator(
         piece["to"] * time[loading] / piece["duration"], (force[loading] / at_once) ** (1.0 / FLAT)
     )(depth)
-    made = Curve(
-        depth=depth,
-        along=along**FLAT,
-        across=np.zeros((60, 2)),
-        reached=2e-3,
-        finer=2e-3,
-        round_tip=False,
-        status="converged",
-        core_seconds=0.0,
-    )
-    return [made for _ in requests]
+    return [straight(depth, along**FLAT, round_tip=False) for _ in requests]
 
 
 @pytest.mark.slow
