@@ -44,6 +44,12 @@ def load_plugins(files: list[Path]) -> None:
             ) from error
 
 
+def check_folder(folder: Path, option: str = "--out") -> None:
+    """Raise InputError if the folder that a command is to write is a file."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{option} {folder}: expected the name of a folder, this is a file")
+
+
 def _show_version(value: bool) -> None:
     if value:
         typer.echo(f"tisim {__version__}")

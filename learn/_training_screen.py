@@ -69,5 +69,6 @@ class TrainingScreen:
     def end(self) -> None:
         if not self._quiet:
             self._console.print(
-                f"{self._folder}: best.pt, last.pt, log.jsonl; next: python -m learn.evaluate {self._folder}"
+                f"{self._folder}: best.pt, last.pt, dataset.npz, log.jsonl; "
+                f"next: python -m learn.evaluate {self._folder}"
             )

@@ -71,7 +71,7 @@ def describe(scene: Scene, pokes: Pokes) -> Floats:
 
 
 def force_unit(scene: Scene, pokes: Pokes) -> Floats:
-    """Unit of force: shear modulus x rod radius x depth [N], shape (b,)."""
+    """Unit of force: shear modulus x indenter radius x depth [N], shape (b,)."""
     return np.asarray(pokes.modulus.numpy() * scene.rod_radius * pokes.depth.numpy())
 
 

@@ -7,6 +7,7 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +19,12 @@ from learn.models import InvariantGnn, Model, Pokes, Response, Scene, Scenes, po
 from learn.models.single_poke import SinglePoke
 from learn.onnx_bundle import OnnxBundle, bundle_in
 from learn.predictor import Predictor
+from learn.quantities import interior_of
 from learn.real_time import RealTime
 from learn.training import Run
 
 BATCH = 64
+DEEPEST = 5e-3  # m; largest depth of the pokes in real time
 _YARDSTICK = 512  # rows and columns of the matrix product
 
 
@@ -91,6 +94,8 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     first = store.frame_poke[0]  # a poke before it may not have been simulated
     shape, level = store.shapes[store.shape[first]], store.softness_names[store.softness[first]]
     interior = {"shape": shape, "softness": level}
+    soft = interior_of(store.setup_of(first), store.profile[store.geometry[first]]).soft
+    deepest = min(DEEPEST, 0.9 * float(soft.min()))  # a tip in the inclusion would be refused
     for threads in (1, 2):
         torch.set_num_threads(threads)
         if isinstance(model, InvariantGnn) and not model.takes_clock:
@@ -106,7 +111,7 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
             touch, number = Predictor(run, store).real_time(interior), itertools.count()
             for what, apart in (("", 0.0), (", first of a contact", 1e-7)):
                 middle, best = timed(
-                    lambda touch=touch, apart=apart, number=number: _touched(touch, next(number), apart),  # type: ignore[misc]
+                    partial(_touched, touch, number, apart, deepest),
                     repeats,
                 )
                 times.append((f"{name}, in real time with intervals{what}", str(threads), middle, best))
@@ -128,13 +133,14 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     return times
 
 
-def _touched(touch: RealTime, number: int, apart: float) -> None:
+def _touched(touch: RealTime, numbers: Iterator[int], apart: float, deepest: float) -> None:
     """Evaluate everything that a real-time program may need of a poke.
 
-    The next deeper of one contact, whose depth goes from 1 to 5 mm again and again, or of the next contact,
-    `apart` [m] from the last.
+    The next deeper of one contact, whose depth goes from a fifth of `deepest` [m] to it again and again, or
+    of the next contact, `apart` [m] from the last.
     """
-    site, depth = (3e-3 + number * apart, -4e-3), 1e-3 + 1e-6 * (number % 4000)
+    number = next(numbers)
+    site, depth = (3e-3 + number * apart, -4e-3), deepest * (0.2 + 0.8 * (number % 4000) / 4000)
     answer = touch(site=site, direction=(0.0, 0.6, -0.8), depth=depth)
     assert np.isfinite(answer.distance)
     assert answer.radius is None or np.isfinite(answer.radius).all()

@@ -7,7 +7,18 @@ from typing import Annotated
 
 import typer
 
-from learn._options import Dataset, Device, Plugins, Runs, Threads, Version, load_plugins, set_threads, single
+from learn._options import (
+    Dataset,
+    Device,
+    Plugins,
+    Runs,
+    Threads,
+    Version,
+    check_folder,
+    load_plugins,
+    set_threads,
+    single,
+)
 from learn._terminal import log_to, make_console, plain_errors, print_table
 from learn.errors import InputError
 
@@ -73,8 +84,7 @@ def main(
         log_to(console)
         chosen = make_device(device)
         folder = out or results_of(runs[0], "evaluation")
-        if folder.exists() and not folder.is_dir():
-            raise InputError(f"--out {folder}: expected the name of a folder, this is a file")
+        check_folder(folder)
         loaded = [load_run(path) for path in runs]
         store = open_dataset(loaded[0], dataset)
         if transfer and all(run.uuid == store.uuid for run in loaded):

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from learn._options import Dataset, Plugins, Version, load_plugins, single
+from learn._options import Dataset, Plugins, Version, check_folder, load_plugins, single
 from learn._terminal import make_console, plain_errors
 
 EXAMPLES = """
@@ -49,9 +49,11 @@ def main(
         from learn.pretrained import results_of
 
         load_plugins(plugin or [])
+        folder = out or results_of(run, "onnx")
+        check_folder(folder)
         predictor = load(run, dataset=dataset)
         files, wrong, pokes = write_bundle(
-            predictor.run, predictor.store, out or results_of(run, "onnx"), predictor.domain, shape=shape
+            predictor.run, predictor.store, folder, predictor.domain, shape=shape
         )
         console.print(
             f"{', '.join(str(path) for path in files)} and model.json; "

@@ -41,13 +41,14 @@ class Predictions:
     poke : index of the poke that each frame belongs to, shape (f,).
     softness : name of the softness level, shape (f,).
     shape : name of the inclusion's shape, shape (f,); "" if it is not known.
-    cover : cover over the inclusion where the rod's axis meets the surface [mm], shape (f,); 0 if not known.
+    cover : cover over the inclusion where the indenter's axis meets the surface [mm], shape (f,); 0 if it is
+        not known.
     covariates : what the errors depend on besides each point (`learn.quantities.covariates`), shape
         (f, len(COVARIATES)); 0 if they are not known.
     spread : standard deviation of an ensemble's members [m], shape (f, n); 0 for one model.
     force_spread : standard deviation of the members' ln(force), shape (f,); 0 for one model.
-    clock : time since contact and the rod's speeds of each frame, as in `learn.models.Pokes`, shape (f, 3);
-        (f, 0) without time.
+    clock : time since contact and the indenter's speeds of each frame, as in `learn.models.Pokes`, shape
+        (f, 3); (f, 0) without time.
     """
 
     truth: NDArray[np.float32]

@@ -2,7 +2,7 @@
 
 invariant-gnn: `encoder.onnx`, once per interior: rigid (n, levels) -> code, vectors, clear, layers.
 `poke.onnx`: these four, start, direction, depth, modulus -> displacement, force. SI units. A model trained
-with time also takes `clock`: time since contact [s], the rod's speed and its speed of approach [m/s].
+with time also takes `clock`: time since contact [s], the indenter's speed and its speed of approach [m/s].
 
 cegnn: `poke.onnx` alone: profile (n, levels), start, direction, depth -> displacement, force. It searches
 neighbours in each layer, and its output jumps where they change: in single precision the rounding of another

@@ -59,7 +59,8 @@ def load_points(path: Path | str) -> AskedPoints:
     Raises
     ------
     InputError
-        If the file or a column is missing, a column is not known, or a value is not a finite number.
+        If the file or a column is missing, a column is not known, a value is not a finite number, or points
+        do not have names of their own in a column id.
     """
     path = Path(path)
     if not path.is_file():
@@ -77,7 +78,8 @@ def load_points(path: Path | str) -> AskedPoints:
             f"{path}: expected a first line with the columns x_mm, y_mm and, if points have names, id,"
             f" separated by commas, got {', '.join(heads) or 'nothing'}"
         )
-    xy, names = [], []
+    xy: list[list[float]] = []
+    names: dict[str, None] = {}
     for row in rows:
         if not any(cell.strip() for cell in row):
             continue
@@ -86,10 +88,17 @@ def load_points(path: Path | str) -> AskedPoints:
             raise InputError(f"{line}: expected {len(heads)} columns, got {len(row)}")
         of = dict(zip(heads, (cell.strip() for cell in row), strict=True))
         xy.append([_number(of[c], c, line) * 1e-3 for c in COLUMNS])
-        names.append(of.get(NAME, ""))
+        if NAME in of:
+            if not of[NAME]:
+                raise InputError(f"{line}: column {NAME}: expected a name, got none")
+            if of[NAME] in names:
+                raise InputError(
+                    f"{line}: column {NAME}: expected another name for each point, got {of[NAME]!r} twice"
+                )
+            names[of[NAME]] = None
     if not xy:
         raise InputError(f"{path}: expected one point or more, got none")
-    return AskedPoints(np.array(xy), names if NAME in heads else None)
+    return AskedPoints(np.array(xy), list(names) if NAME in heads else None)
 
 
 def _number(text: str, column: str, line: str) -> float:

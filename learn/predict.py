@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from learn._options import Dataset, Plugins, Version, load_plugins, single
+from learn._options import Dataset, Plugins, Version, check_folder, load_plugins, single
 from learn._terminal import make_console, plain_errors
 
 EXAMPLES = """
@@ -75,6 +75,7 @@ def main(
         from learn.predictor import load
 
         load_plugins(plugin or [])
+        check_folder(out)
         predictor = load(list(runs), dataset=dataset)
         answer = predictor.predict(scene, points=points, strict=strict)
         answer.save(out)
@@ -89,7 +90,7 @@ def main(
             console.print("no interval of the force, which is predicted to be 0 N or less")
         console.print(answer.verdict)
         for check in answer.checks:
-            if not check.inside:
+            if check.inside is None:  # what is outside stands in the verdict
                 console.print(f"  {check.text}")
         files = ["displacement.csv", *(["points.csv"] if points else []), "prediction.json", "prediction.png"]
         console.print(f"{out}: {', '.join(files)}")

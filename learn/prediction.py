@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from learn.models import Pokes, Scene
 from learn.scene_file import PokeScene
 from learn.training.run_folder import write_whole
-from learn.validity import Check
+from learn.validity import Check, distance_of, grade, verdict
 
 Floats = NDArray[np.float64]
 
@@ -89,22 +89,19 @@ class PokePrediction:
         return None if all(check.inside is None for check in self.checks) else True
 
     @property
+    def distance(self) -> float:
+        """Distance from the trained ranges (`learn.validity.Domain.distance`), 0 inside; NaN if not known."""
+        return distance_of(self.checks)
+
+    @property
     def outside(self) -> list[Check]:
         """Checks of the quantities outside the domain of validity."""
         return [check for check in self.checks if check.inside is False]
 
     @property
     def verdict(self) -> str:
-        """One sentence on the domain of validity."""
-        if self.inside is None:
-            return "The trained ranges are not known: the prediction may be wrong."
-        if self.inside:
-            return "Inside the trained ranges."
-        names = ", ".join(
-            f"{check.name} ({_value(check)}; trained: {check.trained})" for check in self.outside
-        )
-        wider = "" if self.radius is None else "; the intervals are wider, and not calibrated there"
-        return f"Outside the trained ranges: {names}. The force may be wrong by a factor{wider}."
+        """The domain of validity in words (`learn.validity.verdict`)."""
+        return verdict(self.checks, intervals=self.radius is not None)
 
     def as_dict(self) -> dict[str, Any]:
         """The numbers of prediction.json."""
@@ -120,8 +117,15 @@ class PokePrediction:
             answer |= {"radius_mean_mm": float(self.radius.mean() * 1e3)}
             answer |= {"radius_max_mm": float(self.radius.max() * 1e3)}
         answer["inside_training"] = self.inside
+        if self.inside is not None:
+            answer["distance_from_training"] = self.distance
         answer["domain"] = {
-            check.key: {"value": check.value, "trained": check.trained, "inside": check.inside}
+            check.key: {
+                "value": check.value,
+                "trained": check.trained,
+                "inside": check.inside,
+                "beyond": check.beyond,
+            }
             for check in self.checks
         }
         return answer
@@ -151,7 +155,10 @@ class PokePrediction:
         """A matplotlib figure: the cut along the push with the indenter, and the displacement from above."""
         from learn.evaluation.pictures import draw_prediction  # matplotlib: half a second to import
 
-        title = f"force {self._force_text}, {'inside' if self.inside else 'OUTSIDE'} the trained ranges"
+        where = "not known whether inside"
+        if self.inside is not None:
+            where = "inside" if self.inside else grade(self.distance).upper()
+        title = f"force {self._force_text}, {where} the trained ranges"
         marks = None if self.asked is None else self.asked.points
         return draw_prediction(
             self.scene, self.pokes, self.displacement, radius=self.radius, title=title, marks=marks
@@ -174,12 +181,12 @@ class PokePrediction:
     def _repr_html_(self) -> str:
         from learn.evaluation.pictures import encoded
 
-        rows = [("force", self._force_text), ("", self.verdict), *((c.name, _value(c)) for c in self.checks)]
+        rows = [
+            ("force", self._force_text),
+            ("", self.verdict),
+            *((c.name, c.value_text) for c in self.checks),
+        ]
         return f'{html_table(rows)}<img src="data:image/png;base64,{encoded(self.picture())}">'
-
-
-def _value(check: Check) -> str:
-    return check.text.removeprefix(f"{check.name} ").partition(":")[0]
 
 
 def html_table(rows: Sequence[tuple[str, str]]) -> str:

@@ -110,7 +110,7 @@ class Predictor:
         InputError
             If the run's model has no such form, a key is wrong, or the inclusion does not fit the block.
         """
-        return RealTime(self, interior)
+        return RealTime(self.run, self.store, interior, domain=self.domain, intervals=self.intervals)
 
     def _answer(self, poke: PokeScene, given: PokeInput, asked: AskedPoints | None) -> PokePrediction:
         setup, interior, scene, pokes = given
@@ -193,7 +193,7 @@ class Predictor:
             ("shapes", ", ".join(store.shapes)),
             ("blocks", store.describe_blocks()),
             ("softness levels", ", ".join(store.softness_names)),
-            ("intervals", "yes" if self.has_intervals else "none"),
+            ("intervals", "none" if self.intervals is None else self.intervals.text),
         ]
         if self.domain is None:
             return [*rows, ("domain of validity", "not known")]
@@ -212,6 +212,10 @@ def _first_lower(text: str) -> str:
 
 def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None = None) -> Predictor:
     """Load a trained run for predictions.
+
+    Intervals are those that `learn.evaluate` made last for the run: calibrated on the validation part of its
+    dataset, or on the other folds if it was evaluated together with them. Those of "covers" are calibrated on
+    its validation part alone (36 indentations of 6 shapes); `repr` of the predictor states the number.
 
     Parameters
     ----------

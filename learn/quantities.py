@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from learn.data._format import RIGID
+from learn.data._format import GRID, RIGID
 from learn.data.setup import Setup
 from learn.data.store import Store
 
@@ -98,12 +98,40 @@ def covariates(setup: Setup, interior: Interior, *, start: Floats, direction: Fl
 
 
 def cover_at(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> float:
-    """Least thickness of the soft tissue [m] within a rod's radius of the contact site."""
+    """Least thickness of the soft tissue [m] within an indenter's radius of the contact site."""
     site = setup.contact_site(start, direction)
     x, y = setup.points[:, 0] - site[0], setup.points[:, 1] - site[1]
     square = x * x + y * y
     near = square <= max(setup.rod_radius**2, float(square.min()))
     return float(interior.soft[near].min())
+
+
+class Obstacle(NamedTuple):
+    """Where the indenter's tip meets the inclusion: the travel until there, and the cover above it [m]."""
+
+    depth: float
+    cover: float
+
+
+def obstacle(setup: Setup, interior: Interior, start: Floats, direction: Floats) -> Obstacle | None:
+    """What a push comes to before the base: no tip can be there or beyond; None if nothing is in its way.
+
+    The tip is a level of the profile below the top of what is rigid in its column, the profile's resolution.
+    `start` is the tip at first contact [m], `direction` the unit vector of the push.
+    """
+    (length, breadth, height), levels = setup.block_size, len(setup.level_depth)
+    depth = np.arange(1, 2 * levels + 1) * (height / (2 * levels) / -float(direction[2]))
+    x, y = ((start[k] + depth * direction[k] - setup.middle[k]) for k in (0, 1))
+    column, row = (
+        np.clip(np.floor((at / side + 0.5) * GRID), 0, GRID - 1).astype(np.intp)
+        for at, side in ((x, length), (y, breadth))
+    )
+    soft = interior.soft[row * GRID + column]
+    level = np.floor((setup.top - start[2] - depth * direction[2]) * (levels / height) + 1e-9)
+    # the base is no inclusion: a tip comes as near to it as the height of the block allows
+    met = (level > np.rint(soft * (levels / height))) & (level <= levels)
+    first = int(met.argmax())
+    return Obstacle(float(depth[first]), float(soft[first])) if met[first] else None
 
 
 def poke_values(

@@ -6,7 +6,9 @@
 >>> answer = touch(site=(5e-3, -10e-3), direction=(0, 0, -1), depth=4e-3)  # each millisecond
 >>> answer.force, answer.force_interval, answer.displacement, answer.inside
 
-Lengths here are in metres. `torch.set_num_threads(1)` is the fastest if the machine has other work.
+Lengths here are in metres. A pose that no indentation can have, such as a tip in the inclusion, raises
+`learn.errors.ImpossiblePokeError`, whose `reason` a loop can read. `torch.set_num_threads(1)` is the
+fastest if the machine has other work.
 """
 
 from __future__ import annotations
@@ -15,23 +17,35 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
-from learn.errors import InputError
+from learn.data import Store
+from learn.errors import ImpossiblePokeError, InputError
+from learn.evaluation import Intervals
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
-from learn.quantities import covariates, cover_at, poke_values
-from learn.scene_file import kind_of, limits_text, load_poke, scene_and_poke, site_limits
-
-if TYPE_CHECKING:
-    from learn.predictor import Predictor
+from learn.quantities import Obstacle, covariates, cover_at, obstacle, poke_values
+from learn.scene_file import (
+    STEEPEST,
+    in_inclusion,
+    kind_of,
+    limits_text,
+    load_poke,
+    scene_and_poke,
+    site_limits,
+)
+from learn.training import Run
+from learn.validity import Check, Domain, unknown_checks, verdict
 
 Floats = NDArray[np.float64]
-_ONE = 1e-6  # tolerance on the length of a direction
+_ONE = 1e-6  # tolerance on the length of a direction, and on its vertical component
+MAIN = ("depth_mm", "angle_deg", "cover_mm")  # quantities whose trained ranges `repr` shows
+_LEAST_COSINE = math.cos(math.radians(STEEPEST))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -40,6 +54,7 @@ class Answer:
 
     Attributes
     ----------
+    depth : travel since first contact [m].
     displacement : displacement of the surface's points [m], shape (n, 3), float32.
     force : magnitude of the force on the indenter [N].
     force_interval : 90 % interval of the force [N]; None without intervals or without contact.
@@ -48,12 +63,26 @@ class Answer:
         not known.
     """
 
+    depth: float
     displacement: NDArray[np.float32]
     force: float
     force_interval: tuple[float, float] | None
     inside: bool | None
     distance: float
     _radius_mm: Callable[[Floats], Floats] | None
+    _checks: Callable[[], list[Check]]
+
+    @cached_property
+    def checks(self) -> list[Check]:
+        """Comparison of each quantity with its trained range, made when it is first read."""
+        return self._checks()
+
+    @property
+    def verdict(self) -> str:
+        """The domain of validity in words (`learn.validity.verdict`)."""
+        if not self.depth > 0.0:
+            return "No contact: nothing moves."
+        return verdict(self.checks, intervals=self.force_interval is not None)
 
     @cached_property
     def radius(self) -> Floats | None:
@@ -80,7 +109,8 @@ class RealTime:
 
     Parameters
     ----------
-    predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
+    run, store, domain, intervals : those of the predictor. The run is one of invariant-gnn or
+        invariant-gnn-small, trained without time.
     interior : keys of `learn.scene_file.PokeScene` that describe the tissue: shape or inclusion, block_mm,
         softness or shear_modulus_kPa, and law.
 
@@ -95,8 +125,15 @@ class RealTime:
         If the run has another model, a key is wrong, or the inclusion does not fit the block.
     """
 
-    def __init__(self, predictor: Predictor, interior: Mapping[str, Any]) -> None:
-        run, store = predictor.run, predictor.store
+    def __init__(
+        self,
+        run: Run,
+        store: Store,
+        interior: Mapping[str, Any],
+        *,
+        domain: Domain | None,
+        intervals: Intervals | None,
+    ) -> None:
         if not isinstance(run.model, InvariantGnn):
             raise InputError(
                 f"{run.folder}: in real time expected one run of invariant-gnn or invariant-gnn-small, got "
@@ -114,15 +151,33 @@ class RealTime:
         with torch.no_grad():
             encoded = run.model.encode(scene, run.model.prepare(scene))
         self._single = SinglePoke(run.model, encoded)
-        self._domain = predictor.domain
-        self._known = self._domain is None or self._domain.knows(kind_of(file, store))
+        self._domain = domain
+        self._kind = kind_of(file, store)
+        self._known = self._domain is None or self._domain.knows(self._kind)
         self._law = file.law
-        self._intervals = predictor.intervals
+        self._network = f"{run.folder.name}, {run.recipe.model}"
+        self._inclusion = file.shape or _described(file.inclusion)
+        self._intervals = intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
         low, high = site_limits(self._setup)
         self._low, self._high = low.tolist(), high.tolist()
+        self._least_cover = float(self._interior.soft.min())
         self._last: tuple[tuple[float, ...], _Contact] | None = None
+        self._way: tuple[tuple[float, ...], Obstacle | None] | None = None
+
+    def __repr__(self) -> str:
+        length, width, height = (1e3 * side for side in self._setup.block_size)
+        rows = {
+            "network": self._network,
+            "inclusion": self._inclusion,
+            "block": f"{length:.4g} x {width:.4g} x {height:.4g} mm, {len(self.points)} points on top",
+            "shear modulus": f"{1e-3 * self.modulus:.4g} kPa",
+            "intervals": "none" if self._intervals is None else self._intervals.text,
+            "trained": "not known" if self._domain is None else ", ".join(self._domain.texts(MAIN)),
+            "threads": f"{torch.get_num_threads()} of torch",
+        }
+        return "RealTime(\n" + "".join(f"  {key}: {value}\n" for key, value in rows.items()) + ")"
 
     def __call__(
         self,
@@ -135,16 +190,20 @@ class RealTime:
 
         Parameters
         ----------
-        site : intersection of the rod's axis with the rest surface, (x, y) [m].
+        site : intersection of the indenter's axis with the rest surface, (x, y) [m].
         direction : unit vector of the push, (3,).
-        depth : travel since first contact [m]; at 0 or less the rod does not touch, wherever it is, and
+        depth : travel since first contact [m]; at 0 or less the indenter does not touch, wherever it is, and
             nothing moves.
 
         Raises
         ------
+        ImpossiblePokeError
+            If the indenter touches beside the block, is as deep as the block is high, is inclined by more
+            than 45 degrees, or its tip has come to the inclusion, as `Predictor.predict` refuses them.
+            `reason` names which.
         InputError
-            If a value is not finite, the direction does not point into the block or is not a unit vector,
-            `modulus` is not above 0, or the rod touches beside the block or is as deep as the block is high.
+            If a value is not finite, the direction does not point into the block or is not a unit vector, or
+            `modulus` is not above 0.
         """
         push, depth = np.asarray(direction, dtype=np.float64), float(depth)
         if push.shape != (3,) or not abs(math.sqrt(float(push @ push)) - 1.0) <= _ONE or not push[2] < 0.0:
@@ -159,11 +218,13 @@ class RealTime:
         if not 0.0 < modulus < math.inf:
             raise InputError(f"modulus: expected a shear modulus above 0 Pa, got {modulus}")
         if depth > 0.0:
-            self._check_touch(site, depth)
+            self._check_touch(site, push, depth)
         key = (*site, *push)
         if self._last is None or self._last[0] != key:
             self._last = key, self._contact(site, push)
         start, cover, away = self._last[1]
+        if depth > self._least_cover:  # most pokes are not as deep as the thinnest cover
+            self._check_way(key, start, push, depth)
         u, force = self._single(start, push, depth, modulus)
         values = poke_values(
             self._setup,
@@ -186,28 +247,62 @@ class RealTime:
             radius_mm = partial(
                 self._intervals.radius_at_mm, away=away, depth=depth, covariates=near, distance=known
             )
+        checked = values, self._kind, self._law
+        checks = partial(unknown_checks if self._domain is None else self._domain.check, *checked)
         return Answer(
+            depth=depth,
             displacement=u,
             force=force,
             force_interval=interval,
             inside=depth <= 0.0 or (None if math.isnan(distance) else self._known and distance == 0.0),
             distance=distance,
             _radius_mm=radius_mm,
+            _checks=checks,
         )
 
-    def _check_touch(self, site: Sequence[float], depth: float) -> None:
+    def _check_touch(self, site: Sequence[float], push: Floats, depth: float) -> None:
         """Refuse what is no indentation of the block: most often millimetres in the place of metres."""
         (x, y), (x0, y0), (x1, y1) = site, self._low, self._high
         if not (x0 <= x <= x1 and y0 <= y <= y1):
-            raise InputError(f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m")
+            raise ImpossiblePokeError(
+                f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m", "site"
+            )
         height = self._setup.block_size[2]
         if depth >= height:
-            raise InputError(
-                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m"
+            raise ImpossiblePokeError(
+                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m", "depth"
             )
+        if -push[2] < _LEAST_COSINE - _ONE:
+            raise ImpossiblePokeError(
+                f"direction: expected at most {STEEPEST:g} degrees from the vertical, "
+                f"got {math.degrees(math.acos(-push[2])):.4g}",
+                "angle",
+            )
+
+    def _check_way(self, key: tuple[float, ...], start: Floats, push: Floats, depth: float) -> None:
+        """Refuse a tip that has come to the inclusion; `key` is that of the contact."""
+        if self._way is None or self._way[0] != key:
+            self._way = key, obstacle(self._setup, self._interior, start, push)
+        met = self._way[1]
+        if met is not None and depth >= met.depth:
+            raise ImpossiblePokeError(f"depth: {in_inclusion(met, 'm')}, got {depth:.4g} m", "inclusion")
 
     def _contact(self, site: Sequence[float], push: Floats) -> _Contact:
         start = self._setup.first_touch(site, push)
         r = self._points - start[:, None]
         cover = cover_at(self._setup, self._interior, start, push)
         return _Contact(start, cover, np.sqrt((r * r).sum(axis=0)))
+
+
+def _described(inclusion: BaseModel | None) -> str:
+    """Keys and values of an inclusion: "sphere, radius_mm 8, centre_mm (0, 0, 17)"."""
+    keys = {} if inclusion is None else inclusion.model_dump()
+    return ", ".join(_text(key, value) for key, value in keys.items())
+
+
+def _text(key: str, value: Any) -> str:
+    if key == "kind":
+        return "no inclusion" if value == "none" else str(value)
+    numbers = value if isinstance(value, tuple) else (value,)
+    text = ", ".join(f"{number:.4g}" for number in numbers)
+    return f"{key} {f'({text})' if isinstance(value, tuple) else text}"

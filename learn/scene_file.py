@@ -22,7 +22,7 @@ from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import Pokes, Scene, scene_on
-from learn.quantities import Interior, interior_of, shape_kind
+from learn.quantities import Interior, Obstacle, interior_of, obstacle, shape_kind
 
 _MM = 1e-3
 STEEPEST = 45.0  # [degrees]: largest angle between push and normal, as in the simulator
@@ -159,7 +159,7 @@ class PokeScene(_Strict):
 
     @property
     def clock(self) -> tuple[float, float, float] | None:
-        """Time [s], the rod's speed and its speed of approach [m/s]; None without time."""
+        """Time [s], the indenter's speed and its speed of approach [m/s]; None without time."""
         time, speed, approach = self._clock
         if time is None or speed is None or approach is None:
             return None
@@ -223,7 +223,10 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> PokeI
     sine, cosine = math.sin(lean), math.cos(lean)
     direction = np.array([sine * math.cos(heading), sine * math.sin(heading), -cosine])
     start = setup.first_touch((file.site_mm[0] * _MM, file.site_mm[1] * _MM), direction)
-    _check_cover(file, setup, profile, start + direction * file.depth_mm * _MM, where)
+    interior = interior_of(setup, profile)
+    met = obstacle(setup, interior, start, direction)
+    if met is not None and file.depth_mm * _MM >= met.depth:
+        raise InputError(f"{where}: key depth_mm: {in_inclusion(met, 'mm')}, got {file.depth_mm:g}")
 
     def tensor(*values: float) -> torch.Tensor:
         return torch.tensor(values, dtype=torch.float64)
@@ -236,7 +239,7 @@ def scene_and_poke(file: PokeScene, store: Store, where: str = "scene") -> PokeI
         modulus=tensor(_modulus(file, store, where)),
         clock=tensor(*(file.clock or ()))[None],
     )
-    return PokeInput(setup, interior_of(setup, profile), scene, pokes)
+    return PokeInput(setup, interior, scene, pokes)
 
 
 def kind_of(file: PokeScene, store: Store) -> str | None:
@@ -255,6 +258,15 @@ def limits_text(setup: Setup, unit: Literal["mm", "m"]) -> str:
     factor = 1e3 if unit == "mm" else 1.0
     x, y = (f"{factor * a:.4g} to {factor * b:.4g}" for a, b in zip(*site_limits(setup), strict=True))
     return f"x within {x} {unit} and y within {y} {unit} (the block less the indenter's radius)"
+
+
+def in_inclusion(met: Obstacle, unit: Literal["mm", "m"]) -> str:
+    """The largest depth of a push that meets an inclusion in words."""
+    factor = 1e3 if unit == "mm" else 1.0
+    return (
+        f"expected less than {factor * met.depth:.3g} {unit}, where the tip would be within the rigid "
+        f"inclusion, which lies under {factor * met.cover:.3g} {unit} of cover there"
+    )
 
 
 def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
@@ -291,22 +303,6 @@ def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
                 f"{where}: key inclusion: expected within the block, {axis} {a:.4g} to {b:.4g} mm, but it "
                 f"reaches from {centre[k] - half[k]:.4g} to {centre[k] + half[k]:.4g} mm"
             )
-
-
-def _check_cover(
-    file: PokeScene, setup: Setup, profile: NDArray[np.uint8], tip: NDArray[np.float64], where: str
-) -> None:
-    """Raise InputError if the centre of the tip would end within the rigid inclusion."""
-    column = int(np.linalg.norm(setup.points[:, :2] - tip[:2], axis=1).argmin())
-    rigid = profile[column] == RIGID
-    height = setup.block_size[2]
-    level = int((setup.top - tip[2]) / height * len(rigid))
-    if rigid[: min(max(level, 0), len(rigid))].any():
-        cover = float(rigid.argmax()) * height / len(rigid) * 1e3
-        raise InputError(
-            f"{where}: key depth_mm: expected less, the tip would end within the rigid inclusion, which "
-            f"lies under {cover:.3g} mm of cover there, got {file.depth_mm:g}"
-        )
 
 
 def _modulus(file: PokeScene, store: Store, where: str) -> float:

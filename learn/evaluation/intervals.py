@@ -72,6 +72,12 @@ class Intervals:
     growth: tuple[float, ...] = (0.0,) * len(COVARIATES)
     force_growth: tuple[float, ...] = (0.0,) * len(COVARIATES)
 
+    @property
+    def text(self) -> str:
+        """Level and calibration in words: "90 %, calibrated on 36 indentations"."""
+        weaker = f", which guarantee {100 * self.promised:.0f} %" if self.promised < self.level else ""
+        return f"{100 * self.level:.0f} %, calibrated on {self.pokes} indentations{weaker}"
+
     def radius_mm(self, predictions: Predictions, *, distance: float | Floats = 0.0) -> Floats:
         """Radius of the interval at each point of each frame [mm], (f, n).
 

@@ -7,15 +7,14 @@ near the axis; `of_path` makes invariants of them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-if TYPE_CHECKING:
-    from learn.models._encoder import Encoded
+from learn.models.scene import Scene
 
 WIDTHS = (1.5e-3, 3e-3)  # m; standard deviations of the means over columns near the axis
 STEP = 1e-3  # m between samples along the push
@@ -82,17 +81,22 @@ def blocked(
 
 
 class OneContact:
-    """`blocked` of one contact at a time over one interior, in NumPy."""
+    """`blocked` of one contact at a time over one interior, in NumPy.
 
-    def __init__(self, encoded: Encoded, inclusion: int) -> None:
-        scene = encoded.scene
+    Parameters
+    ----------
+    scene : the points above the interior.
+    layers : rigid fractions under the points, shape (n, LAYERS + 1).
+    """
+
+    def __init__(self, scene: Scene, layers: Tensor) -> None:
         self._normals = np.ascontiguousarray(scene.normals.numpy().T)
         self._roughly = self._normals.astype(np.float32)
         self._area = scene.area.float().numpy()[:, None]
-        layers = encoded.layers[:, inclusion].numpy()
+        rigid = layers.numpy()
         # of each layer of each column, in one row: rigid fraction, and what the next layer adds to it
-        self._layers = np.ascontiguousarray(layers[:, :-1]).reshape(-1)
-        self._more = np.ascontiguousarray(np.diff(layers, axis=1)).reshape(-1)
+        self._layers = np.ascontiguousarray(rigid[:, :-1]).reshape(-1)
+        self._more = np.ascontiguousarray(np.diff(rigid, axis=1)).reshape(-1)
         self._per_height = LAYERS / scene.height
         widths = np.array(WIDTHS)[:, None, None]
         self._exponents = (-0.5 / widths**2).astype(np.float32)

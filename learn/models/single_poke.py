@@ -105,7 +105,7 @@ class SinglePoke:
         self._clear = encoded.clear[:, inclusion].double().numpy()
         self._per_clear = 1 / np.maximum(self._clear, _contact.LEAST_CLEAR)
         self._column = model.column(scene)
-        self._ahead = _ahead.OneContact(encoded, inclusion)
+        self._ahead = _ahead.OneContact(scene, encoded.layers[:, inclusion])
         vectors = encoded.vectors[:, :, inclusion].transpose(1, 2)  # (3, v, n)
         self._vectors = np.ascontiguousarray(vectors.numpy())
         prior = model.prior.coefficients.numpy()  # (radial, factors, 3)

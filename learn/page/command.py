@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from learn._options import Dataset, Plugins, Version, load_plugins, single
-from learn._terminal import make_console, plain_errors
+from learn._terminal import log_to, make_console, plain_errors
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -73,6 +73,7 @@ def main(
 ) -> None:
     """Write a run as one interactive HTML page that opens from disk."""
     console = make_console()
+    log_to(console)
     with plain_errors():
         from learn.errors import InputError
         from learn.page.document import Parts, parts_of
@@ -92,13 +93,18 @@ def main(
             predictor = load(run, dataset=dataset)
             if pokes is None:
                 pokes = POKES if predictor.store.has_fields else 0
+                if not pokes:
+                    console.print(
+                        f"no simulated pokes to compare with: {predictor.store.location} is not here, "
+                        "--dataset states where it is"
+                    )
             own = parts_of(predictor, shapes=shape, pokes=pokes)
         if parts is not None:
             own.save(parts)
             console.print(f"{parts}: {parts.stat().st_size / 1e6:.1f} MB")
             return
         made = own.write(out)
-        shown = f"{made.pokes} simulated poke{'' if made.pokes == 1 else 's'}"
+        shown = f"{made.pokes or 'no'} simulated poke{'' if made.pokes == 1 else 's'}"
         console.print(
             f"{made.path}: {made.size / 1e6:.1f} MB, {made.gzipped / 1e6:.1f} MB gzipped; {made.interiors} "
             f"interiors, {shown} of the test part"

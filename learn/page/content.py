@@ -6,6 +6,7 @@ and the interiors' codes have those of the graph (`learn.page.graph`).
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,6 +24,7 @@ from learn.predictor import Predictor
 from learn.quantities import shape_kind
 
 NO_INCLUSION = "none"
+_log = logging.getLogger(__name__)
 
 
 @dataclass(eq=False, kw_only=True)
@@ -54,7 +56,7 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
     predictor : predictor of one run of invariant-gnn or invariant-gnn-small, trained without time.
     shapes : inclusions of the dataset to offer, in one block; None: all, if their blocks are alike. A block
         without inclusion is always offered.
-    pokes : largest number of simulated pokes of the test part.
+    pokes : largest number of simulated pokes of the test part; that it has fewer is logged as a warning.
 
     Raises
     ------
@@ -97,6 +99,9 @@ def content_of(predictor: Predictor, *, shapes: Sequence[str] | None = None, pok
         content.inputs.append(inputs)
         content.about["interiors"].append({"name": name, "label": label, "kind": kind or "not known"})
     shown: list[dict[str, Any]] = []
+    fewer = simulated.shortage(store, tested, names, pokes)
+    if fewer is not None:
+        _log.warning("%s", fewer)
     for poke in simulated.choose(store, tested, names, pokes):
         about, moved = simulated.described(store, poke, names.index(store.shapes[store.shape[poke]]))
         content.arrays[f"simulated-{len(shown)}"] = moved

@@ -127,6 +127,8 @@ class Parts:
     @staticmethod
     def load(path: Path) -> Parts:
         """Read the zip that `save` wrote; InputError if the file is not one."""
+        if not path.exists():
+            raise InputError(f"{path}: no such file, expected the parts of a page (learn.page --parts)")
         try:
             with zipfile.ZipFile(path) as file:
                 text, arrays, graph = (file.read(name) for name in _MEMBERS)

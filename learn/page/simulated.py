@@ -20,6 +20,23 @@ def choose(store: Store, tested: NDArray[np.int64], shapes: list[str], most: int
     return shown[picked].tolist() if len(shown) else []
 
 
+def shortage(store: Store, tested: NDArray[np.int64], shapes: list[str], most: int) -> str | None:
+    """Why there are fewer pokes than the `most` that were asked for, as one sentence; None if there are not.
+
+    The other parameters are those of `choose`.
+    """
+    found = len(choose(store, tested, shapes, most))
+    if found >= most:
+        return None
+    number = f"{found or 'no'} simulated poke{'' if found == 1 else 's'} to compare with, of {most} asked for"
+    if not len(tested):
+        return f"{number}: the run has no test part"
+    if found:
+        return f"{number}: the test part has no more over the page's inclusions"
+    others = dict.fromkeys(store.shapes[k] for k in store.shape[tested])
+    return f"{number}: none of the page's inclusions is in the test part, which has {', '.join(others)}"
+
+
 def quantised(moved: NDArray[np.float32]) -> tuple[NDArray[np.int16], list[float]]:
     """Displacements (f, n, 3) as 16-bit numbers of steps, and the step of each frame [m]."""
     largest = np.abs(moved).max(axis=(1, 2)).astype(np.float64)

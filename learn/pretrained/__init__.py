@@ -41,6 +41,10 @@ def _find(path: Path) -> Path:
         return _HERE / path
     if not path.exists():
         raise InputError(f"{path}: no such folder, expected that of a run, or one of {', '.join(names())}")
+    if not path.is_dir():
+        raise InputError(
+            f"{path}: expected the folder of a run, or one of {', '.join(names())}; this is a file"
+        )
     return path
 
 

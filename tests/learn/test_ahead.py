@@ -103,5 +103,5 @@ def test_one_poke_at_a_time_has_the_same_samples(site: tuple[float, float], degr
     scene = _scene((np.hypot(X - 0.01, Y) < 0.012) & (Z < -0.007))
     start, push = np.array([*site, 0.0]), _inclined(degrees, 35)
     encoded: Any = SimpleNamespace(scene=scene, layers=ahead.layers_of(scene.rigid))
-    found = ahead.OneContact(encoded, 0)((scene.points.numpy() - start).T, push)
+    found = ahead.OneContact(scene, encoded.layers[:, 0])((scene.points.numpy() - start).T, push)
     np.testing.assert_allclose(found, _blocked(scene, start, push)[:, 0], atol=1e-6)

@@ -143,6 +143,8 @@ def test_a_file_of_markers_gives_a_file_of_their_displacement(run: Path, tmp_pat
         ("x_mm,y_mm\n1,2\n1,2,3\n", ("line 3", "expected 2 columns, got 3")),
         ("x_mm,y_mm\n1,nan\n", ("line 2", "column y_mm", "'nan'")),
         ("x_mm,y_mm,x_mm\n1,2,3\n", ("columns x_mm, y_mm",)),
+        ("id,x_mm,y_mm\na,1,2\nb,2,2\na,3,2\n", ("line 4", "column id", "another name", "'a' twice")),
+        ("id,x_mm,y_mm\na,1,2\n,2,2\n", ("line 3", "column id: expected a name, got none")),
         ("id,x_mm,y_mm\nfar,0.1,51\n", ("point far", "top face, x -50 to 50 mm", "(0.1, 51) mm")),
     ],
 )

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from learn import benchmark
 from learn.benchmark import latencies
 from learn.data import open_store
+from learn.data._format import RIGID
 from learn.training import Recipe, Trainer, load_run
 from tests.learn.small_store import leave_out, write_store
 
@@ -25,7 +27,7 @@ def test_the_loaders_benchmark_runs(
     assert [name for name in names if name not in shown] == []
 
 
-def test_latencies_of_a_run_on_a_part_of_a_dataset(tmp_path: Path) -> None:
+def test_latencies_of_a_run_on_a_part_of_a_dataset(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first level of the store of a stopped build may have no poke."""
     folder = write_store(tmp_path / "s.zarr", shapes=4, sites=1, frames=2)
     leave_out(folder, [0, 2, 4, 6])
@@ -41,3 +43,6 @@ def test_latencies_of_a_run_on_a_part_of_a_dataset(tmp_path: Path) -> None:
         "invariant-gnn-small, 8 at once, each",
     ]
     assert all(0.0 < best <= median for *_, median, best in found)
+    monkeypatch.setattr(benchmark, "DEEPEST", 0.03)
+    store.profile[..., 2:] = RIGID  # half a millimetre of cover: the timed pokes do not go into the inclusion
+    assert len(latencies(load_run(tmp_path / "run"), store, 3)) == len(found)

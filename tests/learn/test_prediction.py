@@ -104,7 +104,7 @@ def predictor(run: Path) -> Predictor:
         (
             "depth_mm: 2\nangle_deg: 20\nheading_deg: 45\nshape: shape-1",
             "depth_mm: 5\n" + SPHERE.replace("[0, 0, 8]", "[5, -10, 20]"),
-            "key depth_mm: expected less, the tip would end within the rigid inclusion",
+            "key depth_mm: expected less than 4.25 mm, where the tip would be within the rigid inclusion",
         ),
         ("shape: shape-1\n", "", "expected either shape or inclusion"),
     ],
@@ -211,14 +211,22 @@ def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> No
     done = call(learn.predict.app, run, scene, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     flat = " ".join(done.output.split())
-    assert "Outside the trained ranges: depth (9 mm; trained: 1 to 2 mm)" in flat
+    assert "Far outside the trained ranges: depth (9 mm; trained: 1 to 2 mm; beyond by 699 % of the" in flat
+    assert flat.count("depth (9 mm") + flat.count("depth 9 mm") == 1  # said once
     answer = json.loads((tmp_path / "out" / "prediction.json").read_text())
     assert answer["inside_training"] is False
     depth = answer["domain"]["depth_mm"]
-    assert depth == {"value": pytest.approx(9.0), "trained": "1 to 2 mm", "inside": False}
+    assert depth == {
+        "value": pytest.approx(9.0),
+        "trained": "1 to 2 mm",
+        "inside": False,
+        "beyond": pytest.approx(6.988),
+    }
+    beyond = [one["beyond"] for one in answer["domain"].values()]
+    assert answer["distance_from_training"] == pytest.approx(np.linalg.norm(beyond))
     assert set(answer["domain"]) == {*QUANTITIES, "inclusion"}
     strict = call(learn.predict.app, run, scene, "--strict", "--out", tmp_path / "strict")
-    refused(strict, str(scene), "--strict", "depth (9 mm; trained: 1 to 2 mm)")
+    refused(strict, str(scene), "--strict", "depth (9 mm; trained: 1 to 2 mm; beyond by")
     assert not (tmp_path / "strict").exists()
 
 

@@ -36,6 +36,13 @@ def test_each_is_complete(name: str) -> None:
     assert (
         f"{sum(p.numel() for p in run.model.parameters()):,} parameters" in (folder / "card.md").read_text()
     )
+    predictor = learn.load(name)
+    assert predictor.intervals is not None
+    number = f"{predictor.intervals.pokes} indentations"
+    assert f"intervals: 90 %, calibrated on {number}\n" in repr(predictor)
+    card = " ".join((folder / "card.md").read_text().split())
+    assert f"calibrated on the validation part alone: {number} of 6 shapes" in card
+    assert f"({number} of 6 shapes)" in " ".join(str(learn.load.__doc__).split())
     tables = load_tables(folder / TABLES)
     assert tables.uuid == run.uuid
     assert tables.location == run.location
@@ -80,6 +87,20 @@ def test_results_of_one_are_not_written_into_the_package(
     assert (tmp_path / "covers-evaluation" / "report.html").is_file()
     assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == before
     refused(call(app, "evaluate", "covers"), "covers.zarr: no dataset there")
+
+
+@pytest.mark.parametrize("command", ["predict", "evaluate", "export"])
+def test_a_file_is_no_folder_to_write_nor_one_of_a_run(command: str, tmp_path: Path) -> None:
+    file = tmp_path / "notes.txt"
+    file.write_text("notes")
+    scene = (SCENE,) if command == "predict" else ()
+    for run, out, words in (
+        ("covers", file, f"--out {file}: expected the name of a folder, this is a file"),
+        (file, tmp_path / "out", f"{file}: expected the folder of a run, or one of covers; this is a file"),
+    ):
+        refused(call(app, command, run, *scene, "--out", out), words)
+    assert file.read_text() == "notes"
+    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,13 +12,12 @@ import pytest
 import torch
 
 import learn
-from learn.errors import InputError
+from learn.errors import ImpossiblePokeError, InputError
 from learn.evaluation import Intervals
 from learn.evaluation.intervals import FORCE_UNKNOWN
 from learn.predictor import Predictor
 from learn.quantities import Interior, gap_mm
 from learn.real_time import RealTime
-from learn.validity import OTHER_LAW, Domain
 from tests.learn.commands import train_small
 from tests.learn.small_store import write_store
 
@@ -122,30 +121,42 @@ def test_intervals_are_wider_near_what_is_rigid(predictor: Predictor) -> None:
     assert math.log(wide / narrow) == pytest.approx(-0.02 * (near - far), rel=0.02)
 
 
-def test_distance_is_in_units_of_the_trained_ranges() -> None:
-    domain = Domain(
-        ranges={"depth_mm": (1.0, 21.0), "rod_radius_mm": (2.5, 2.5), "site_to_side_mm": (20.0, 50.0)},
-        kinds=("cube",), law="ogden", proportional=("shear_modulus_kPa",),
-    )  # fmt: skip
-    plain = {"depth_mm": 5.0, "rod_radius_mm": 2.5, "site_to_side_mm": 60.0, "shear_modulus_kPa": 1e4}
+def test_an_answer_in_real_time_says_how_far_outside_it_is(predictor: Predictor) -> None:
+    """In the words of the file's prediction, and of its checks."""
+    touch = predictor.real_time(INTERIOR)
+    for depth in (1.5, 2.5, 4.0):
+        scene = {"site_mm": [5, -10], "depth_mm": depth, **INTERIOR}
+        answer = touch(site=(5e-3, -10e-3), direction=(0.0, 0.0, -1.0), depth=depth * 1e-3)
+        assert answer.verdict == predictor.predict(scene).verdict
+        assert answer.distance == pytest.approx(predictor.predict(scene).distance)
+    assert "depth (4 mm; trained: 1 to 2 mm; beyond by" in answer.verdict
+    air = touch(site=(5e-3, -10e-3), direction=(0.0, 0.0, -1.0), depth=-1e-3)
+    assert air.verdict == "No contact: nothing moves."
+    touch._domain = None
+    answer = touch(site=(5e-3, -10e-3), direction=(0.0, 0.0, -1.0), depth=1.5e-3)
+    assert "trained ranges are not known" in answer.verdict
 
-    def distance(**changes: float) -> float:
-        return domain.distance({**plain, **changes})
 
-    assert distance() == 0.0
-    assert distance(depth_mm=31.0) == pytest.approx(0.5, abs=5e-3)
-    assert distance(rod_radius_mm=4.0) == pytest.approx(0.6, abs=5e-3)
-    assert distance(site_to_side_mm=5.0) == pytest.approx(0.5, abs=0.01)
-    assert distance(depth_mm=31.0, rod_radius_mm=4.0) == pytest.approx(math.hypot(0.5, 0.6), abs=5e-3)
-    assert [domain.knows(kind) for kind in ("cube", None, "sphere")] == [True, True, False]
-    assert all(check.inside for check in domain.check(plain, "cube"))
-    upright = Domain(ranges={"angle_deg": (0.0, 0.0)}, kinds=("cube",), law="ogden")  # vertical pokes alone
-    assert upright.distance({"angle_deg": 0.05}) == 0.0
-    assert upright.distance({"angle_deg": 40.1}) == pytest.approx(4.0)
-    assert domain.distance(plain, "ogden") == 0.0
-    assert domain.distance({**plain, "depth_mm": 31.0}, "yeoh") == pytest.approx(
-        math.hypot(0.5, OTHER_LAW), abs=5e-3
-    )
+def test_it_shows_what_it_is_of(predictor: Predictor) -> None:
+    lump = {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 17]}
+    touch = predictor.real_time({"inclusion": lump, "shear_modulus_kPa": 12})
+    assert repr(touch).splitlines()[:6] == [
+        "RealTime(",
+        "  network: run, invariant-gnn-small",
+        "  inclusion: sphere, radius_mm 8, centre_mm (0, 0, 17)",
+        "  block: 100 x 100 x 32 mm, 1024 points on top",
+        "  shear modulus: 12 kPa",
+        "  intervals: 90 %, calibrated on 20 indentations",
+    ]
+    assert "  trained: depth 1 to 2 mm, angle " in repr(touch)
+    assert "  threads: 1 of torch" in repr(touch)
+    named = predictor.real_time(INTERIOR)
+    named._domain = named._intervals = None
+    shown = repr(named)
+    for line in ("inclusion: shape-1", "intervals: none", "trained: not known"):
+        assert f"  {line}\n" in shown
+    none = predictor.real_time({"inclusion": {"kind": "none"}, "softness": "S0"})
+    assert "  inclusion: no inclusion\n" in repr(none)
 
 
 def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
@@ -160,6 +171,7 @@ def test_another_law_is_marked_and_widens(predictor: Predictor) -> None:
     assert [check.inside for check in (mine.checks[-1], other.checks[-1])] == [True, False]
     assert "law" not in [check.key for check in silent.checks]
     assert "material law (mooney-rivlin; trained: " in other.verdict
+    assert "; counted as 10 % of a range). The force may be wrong" in other.verdict
     assert mine.inside is silent.inside is True
     assert mine.force == other.force == silent.force
     assert other.force_interval is not None
@@ -208,16 +220,74 @@ def test_just_after_contact_an_error_is_no_larger_than_the_travel(predictor: Pre
         ({"site": (0.0, 0.0, 0.032)}, r"site: expected \(x, y\), got"),
         ({"direction": (0.0, -1.0)}, "direction: expected a unit vector"),
         ({"direction": ((0.0, 0.0, -1.0),)}, "direction: expected a unit vector"),
-        ({"site": (0.0, 0.048)}, r"site: expected x within -0.0475 to 0.0475 m and y .*got \(0, 0.048\) m"),
-        ({"site": (-0.048, 0.0)}, "site: expected x within"),
-        ({"site": (5.0, -10.0), "depth": 4.0}, r"site: expected .*got \(5, -10\) m"),  # millimetres
-        ({"depth": 4.0}, "depth: expected less than the block's height of 0.032 m, got 4 m"),
     ],
 )
 def test_nonsense_is_refused(touch: RealTime, poke: dict[str, object], words: str) -> None:
     plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
-    with pytest.raises(InputError, match=words):
+    with pytest.raises(InputError, match=words) as refused:
         touch(**{**plain, **poke})  # type: ignore[arg-type]
+    assert not isinstance(refused.value, ImpossiblePokeError)
+
+
+@pytest.mark.parametrize(
+    ("poke", "reason", "words"),
+    [
+        (
+            {"site": (0.0, 0.048)},
+            "site",
+            r"site: expected x within -0.0475 to 0.0475 m and y .*got \(0, 0.048\) m",
+        ),
+        ({"site": (-0.048, 0.0)}, "site", "site: expected x within"),
+        ({"site": (5.0, -10.0), "depth": 4.0}, "site", r"site: expected .*got \(5, -10\) m"),  # millimetres
+        ({"depth": 4.0}, "depth", "depth: expected less than the block's height of 0.032 m, got 4 m"),
+        ({"direction": _way(46, 30)}, "angle", "at most 45 degrees from the vertical, got 46$"),
+        ({"depth": 0.015}, "inclusion", "within the rigid .* under 0.0103 m of cover there, got 0.015 m"),
+    ],
+)
+def test_poses_that_no_poke_can_have_are_refused_with_their_reason(
+    predictor: Predictor, poke: dict[str, object], reason: str, words: str
+) -> None:
+    lump = {"kind": "sphere", "radius_mm": 8, "centre_mm": [0, 0, 14]}
+    touch = predictor.real_time({"inclusion": lump, "softness": "S1"})
+    plain: dict[str, object] = {"site": (0.0, 0.0), "direction": (0.0, 0.0, -1.0), "depth": 1e-3}
+    with pytest.raises(ImpossiblePokeError, match=words) as refused:
+        touch(**{**plain, **poke})  # type: ignore[arg-type]
+    assert refused.value.reason == reason
+    assert touch(**plain).force > 0.0  # type: ignore[arg-type]  # it answers the next
+
+
+@pytest.mark.parametrize(
+    ("x", "angle", "free"),
+    [
+        (0.0, 0.0, 10.0),  # onto the top of the sphere
+        (-4.0, 0.0, 11.1),  # onto its flank
+        (-12.0, 0.0, None),  # beside it
+        (-12.0, 45.0, 16.4),  # from the side into its flank: beyond it, the tip would have passed through it
+        (6.0, 45.0, None),  # away from it
+    ],
+)
+def test_no_tip_goes_into_an_inclusion_nor_through_it(
+    predictor: Predictor, x: float, angle: float, free: float | None
+) -> None:
+    """The same depths [mm] are refused in real time and in files; `free` by geometry, to 1 mm."""
+    sphere = {"kind": "sphere", "radius_mm": 8, "centre_mm": [12, -9, 14]}
+    interior = {"inclusion": sphere, "softness": "S1"}
+    touch, push = predictor.real_time(interior), _way(angle, 0)
+    touches, goes_in = (8.0, 20.0, 28.0), ()
+    if free is not None:
+        touches, goes_in = (free - 2.0, free - 1.0), (free + 1.0, 20.0, 28.0)
+    for depth in (*touches, *goes_in):
+        scene = {**interior, "site_mm": [12 + x, -9], "depth_mm": depth, "angle_deg": angle}
+        site = ((12 + x) * 1e-3, -9e-3)
+        if depth in touches:
+            predictor.predict(scene)
+            touch(site=site, direction=push, depth=depth * 1e-3)
+            continue
+        with pytest.raises(InputError, match=r"key depth_mm: .* within the rigid inclusion"):
+            predictor.predict(scene)
+        with pytest.raises(ImpossiblePokeError, match=r"depth: .* within the rigid inclusion"):
+            touch(site=site, direction=push, depth=depth * 1e-3)
+    touch(site=(-0.030, 0.030), direction=push, depth=0.020)  # elsewhere nothing is in the way
 
 
 @pytest.mark.parametrize("modulus", [0.0, -1e3, math.nan, math.inf])

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import re
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from learn.page import command
+from learn.page import command, document
+from learn.page.content import content_of
 from learn.page.document import Parts, parts_of
+from learn.page.simulated import shortage
 from learn.predictor import Predictor
 from learn.training.run_folder import write_whole
 from tests.learn.commands import call, refused
@@ -44,6 +48,44 @@ def test_the_page_from_the_zip_is_the_page_from_the_run(
     assert again.read_bytes() == saved.read_bytes()
 
 
+@pytest.fixture
+def without_graph(monkeypatch: pytest.MonkeyPatch, saved: Path) -> None:
+    """The command makes the content of a page, and takes its graph, which takes long, from `saved`."""
+
+    def parts(predictor: Predictor, *, shapes: list[str] | None, pokes: int) -> Parts:
+        content_of(predictor, shapes=shapes, pokes=pokes)
+        return Parts.load(saved)
+
+    monkeypatch.setattr(document, "parts_of", parts)
+
+
+@pytest.mark.usefixtures("without_graph")
+def test_fewer_simulated_pokes_than_asked_for_are_explained(predictor: Predictor, tmp_path: Path) -> None:
+    [trained, *_], [tested] = (predictor.run.groups[name] for name in ("train", "test"))
+    asked = "simulated poke.? to compare with, of"
+    cases = {
+        (trained, 2): f"no {asked} 2 asked for: none .* in the test part, which has {tested}$",
+        (tested, 90): f"6 {asked} 90 asked for: the test part has no more over the page's inclusions$",
+        (tested, 6): "$",
+        (trained, 0): "$",
+    }
+    for (shape, pokes), words in cases.items():
+        flags = ("--shape", shape, "--pokes", pokes, "--parts", tmp_path / "poke.zip")
+        done = call(command.app, predictor.run.folder, *flags)
+        assert done.exit_code == 0, done.output
+        [*notes, _] = done.output.splitlines()  # the last is of the file
+        assert re.match(words, " ".join(notes)), done.output
+    nothing = np.zeros(0, dtype=np.int64)
+    assert str(shortage(predictor.store, nothing, [tested], 4)).endswith(": the run has no test part")
+
+
+@pytest.mark.usefixtures("without_graph")
+def test_a_page_of_a_network_whose_dataset_is_elsewhere_says_so(tmp_path: Path) -> None:
+    done = call(command.app, "covers", "--shape", "sphere-03", "--parts", tmp_path / "poke.zip")
+    assert done.exit_code == 0, done.output
+    assert "no simulated pokes to compare with: covers.zarr is not here" in " ".join(done.output.split())
+
+
 def _without(saved: Path, path: Path, name: str, content: bytes | None) -> Path:
     """Copy of the zip with other content of one member, or without it."""
     with zipfile.ZipFile(saved) as old, zipfile.ZipFile(path, "w") as new:
@@ -64,7 +106,7 @@ def test_what_is_no_zip_of_parts_is_refused(saved: Path, tmp_path: Path) -> None
     (tmp_path / "locked.zip").write_bytes(locked)
     cases = {
         tmp_path / "locked.zip": "expected the parts of a page",
-        tmp_path / "none.zip": "expected the parts of a page",
+        tmp_path / "none.zip": "no such file, expected the parts of a page",
         tmp_path / "text.zip": "expected the parts of a page",
         _without(saved, tmp_path / "less.zip", "poke.onnx", None): "expected the parts of a page",
         _without(saved, tmp_path / "more.zip", "page.json", json.dumps({**stated, "x": 1}).encode()): "key x",

@@ -117,7 +117,7 @@ def _advance(
         guess = walk.x.copy() if walk.velocity is None else predict(system, walk.x, walk.velocity * pace)
         kept = done and stop.frame
         tolerance = (1.0 if kept else BETWEEN) * scene.solver.tolerance
-        outcome, failed = solve_step(system, block, guess, tolerance=tolerance, kept=kept)
+        outcome, failed = solve_step(system, block, guess, tolerance=tolerance, kept=kept, length=share * way)
         walk.steps += 1
         if failed is not None:
             walk.cuts += 1

@@ -17,7 +17,7 @@ import numpy as np
 
 from tisim.nonlinear.newton import Outcome
 from tisim.problems.indentation.condensed import CondensedBlock
-from tisim.problems.indentation.steps import Array, overlap_fault
+from tisim.problems.indentation.steps import Array, overlap_fault, too_deep
 from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
@@ -35,6 +35,8 @@ PART, LOOSEST, LEAST = 0.2, 2e-3, 0.4
 # tolerance, and again each time the drag has fallen to AGAIN times its value at the last attempt.
 NEAR, TRIED, AGAIN = 6.0, 12, 0.3
 
+# Longest step for which a motion is tried [m].
+LONGEST = 0.2e-3
 # Iterations of the direct attempt and of the motion, in units of the largest number of a step.
 STRAIGHT, IN_MOTION = 0.5, 4.0
 # The motion is abandoned unless its drag has fallen to the fraction LOW of the first after the fraction SOON
@@ -43,9 +45,19 @@ LOW, SOON = 0.1, 0.375
 
 
 def solve_step(
-    system: PokeSystem, block: CondensedBlock, x: Array, *, tolerance: float, kept: bool
+    system: PokeSystem,
+    block: CondensedBlock,
+    x: Array,
+    *,
+    tolerance: float,
+    kept: bool,
+    length: float = 0.0,
+    between: float = 0.0,
 ) -> tuple[Outcome, Status | None]:
     """Equilibrium at the system's pose from the start value x (n, 3), directly or by a damped motion.
+
+    A motion takes five times the iterations of a direct attempt and more, and most steps succeed if they are
+    shorter. A step above LONGEST is therefore refused without one, so that the caller makes it shorter.
 
     Parameters
     ----------
@@ -55,6 +67,11 @@ def solve_step(
         Start positions [m].
     tolerance, kept
         See `tisim.nonlinear.contact_newton.settled`.
+    length : float
+        Length of the step [m].
+    between : float
+        Tolerance of a step between frames: a direct attempt that is within it is accepted although it has not
+        converged to `tolerance`, and its status says so.
 
     Returns
     -------
@@ -65,8 +82,11 @@ def solve_step(
     system.touch(x)
     outcome = block.solve(x, tolerance=tolerance, max_iterations=math.ceil(STRAIGHT * most), kept=kept)
     refused = overlap_fault(outcome, system)
-    if refused is None:
+    nearly = refused is Status.NOT_CONVERGED and outcome.residual <= between
+    if refused is None or (nearly and not too_deep(outcome.x, system)):
         return outcome, None
+    if length > LONGEST:
+        return outcome, refused
     moved = come_to_rest(
         system, block, x, tolerance=tolerance, max_iterations=math.ceil(IN_MOTION * most), kept=kept
     )

@@ -16,7 +16,7 @@ from tisim.parallel.threads import one_thread
 from tisim.problems._registry import OnStep, skip
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.course import follow, without_course
-from tisim.problems.indentation.damped import solve_step
+from tisim.problems.indentation.damped import LONGEST, solve_step
 from tisim.problems.indentation.kind import ELEMENT, SAME
 from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.steps import (
@@ -90,7 +90,7 @@ def _push(
 ) -> tuple[list[Frame], Status, int, int]:
     x = system.previous.copy()
     velocity = np.zeros_like(x)
-    refused = in_vain = 0
+    in_vain = 0
     depth = 0.0
     frames: list[Frame] = []
     travelled = 0.0
@@ -110,28 +110,30 @@ def _push(
             guess = predict(system, x, velocity * (target - depth))
             frame = way * (target - wanted) >= -SAME
             tolerance = (1.0 if frame else BETWEEN) * scene.solver.tolerance
-            outcome, failed = solve_step(system, block, guess, tolerance=tolerance, kept=frame)
+            put_off = frame and way * (goal - target) > SAME  # the last frame has no later one
+            length = abs(target - depth)
+            outcome, failed = solve_step(
+                system, block, guess, tolerance=tolerance, kept=frame, length=length,
+                between=BETWEEN * scene.solver.tolerance if put_off else 0.0,
+            )  # fmt: skip
             steps += 1
             if _log.isEnabledFor(logging.DEBUG):
                 _log.debug(
                     "%7.3f mm, step %.3f mm: %s", target * 1e3, step * 1e3, _state(outcome, system, block)
                 )
+            later = way * min(way * target + LATER * scene.frame_spacing, way * goal)
             if failed is not None:
                 status = failed
                 cuts += 1
-                refused += 1
                 in_vain += outcome.iterations
-                if in_vain >= IN_VAIN * scene.solver.max_iterations:
+                step = CUT * min(step, length)
+                if in_vain >= IN_VAIN * scene.solver.max_iterations or step < SMALLEST_STEP:
                     return frames, status, steps, cuts
-                if frame and way * (goal - target) > SAME:
-                    next_frame = way * min(way * target + LATER * scene.frame_spacing, way * goal)
-                    if refused == 1:
-                        continue
-                step *= CUT
-                if step < SMALLEST_STEP:
-                    return frames, status, steps, cuts
+                if put_off and length <= LONGEST:
+                    next_frame = later
                 continue
-            refused = 0
+            if outcome.status is not Status.CONVERGED:
+                frame, next_frame = False, later
             velocity = (outcome.x - x) / (target - depth)
             travelled += abs(target - depth)
             x, depth = outcome.x, target

@@ -77,7 +77,12 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
     """Reason for which a step is refused; None if it is accepted."""
     if outcome.status is not Status.CONVERGED:
         return outcome.status
-    return Status.PENETRATION if system.overlap(outcome.x) > REFUSE_AT * system.edge else None
+    return Status.PENETRATION if too_deep(outcome.x, system) else None
+
+
+def too_deep(x: Array, system: PokeSystem) -> bool:
+    """True if the surface at x (n, 3) is farther in the rod than a step may leave it."""
+    return system.overlap(x) > REFUSE_AT * system.edge
 
 
 def next_step(step: float, iterations: int) -> float:

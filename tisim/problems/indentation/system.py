@@ -42,6 +42,9 @@ POINTS_PER_SIDE = {3: 4, 4: 4, 6: 4, 8: 5}
 # Points per side at which the penetration of a converged surface is measured: the rod's edge could pass
 # between the contact points of a curved facet.
 WATCHED_PER_SIDE = 7
+# Penetration of an accepted state, as a fraction of the edge radius, from which facets have FINER more points
+# of contact per side (and WATCHED_FINER are measured): over crushed tissue the edge passes between fewer.
+FINER_FROM, FINER, WATCHED_FINER = 0.22, 2, 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +94,7 @@ class Remembered(NamedTuple):
     pose: tuple[Array, Array]
     slip: Array
     gap: Array
+    finer: bool
     history: History | None
     parts: tuple[Array, Array] | None
 
@@ -105,6 +109,7 @@ class PokeSystem:
     facets : facets of the top that the rod can touch, shape (f, a).
     far : condensed far tissue, if the body is the near part of a block; else None.
     drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
+    finer : True once the facets have more contact points (`FINER_FROM`).
     report : results of the last residual or linearisation, shape (6,): force on the rod (3) [N], smallest
         distance [m], area in contact [m2], 1 if friction acts.
     """
@@ -128,22 +133,14 @@ class PokeSystem:
         self._touch = FirstTouch(scene, mesh, self.facets)
         self.start = self._previous_start = self._touch.tip(self.axis)
         self._slot = discretisation.pattern.slots(self.facets)
-        shape, self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE[self.facets.shape[1]])
-        self._shape = np.ascontiguousarray(shape)
-        between = facet_areas(mesh, self.facets, WATCHED_PER_SIDE)[0]
-        self._watched = np.ascontiguousarray(between), np.empty((len(self.facets), len(between)))
-        points = self._area.shape
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
         self._law = np.array(
             [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
         )
-        self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
-        self._skew = np.zeros((*points, 9))
-        self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
-        self._part = np.zeros(points)
         self._measure, self._energy, self._assemble = contact_kernels()
+        self._place_points(finer=False)
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
         self.far: FarField | None = None
@@ -167,6 +164,28 @@ class PokeSystem:
             shift += self.start - self._previous_start
             turned = rotation(self.previous_axis, self.axis)
         self._rod = pack_rod(self.tip, self.axis, rod.radius, self.edge, shift, turned)
+
+    def _place_points(self, *, finer: bool) -> None:
+        """Place contact points that do not touch yet, and those at which the penetration is measured."""
+        mesh, more = self.discretisation.mesh, FINER if finer else 0
+        shape, self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE[self.facets.shape[1]] + more)
+        self._shape = np.ascontiguousarray(shape)
+        between = facet_areas(mesh, self.facets, WATCHED_FINER if finer else WATCHED_PER_SIDE)[0]
+        self._watched = np.ascontiguousarray(between), np.empty((len(self.facets), len(between)))
+        points = self._area.shape
+        self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
+        self._skew = np.zeros((*points, 9))
+        self._gap, self._pressure = np.full(points, 1.0), np.zeros(points)
+        self._part = np.zeros(points)
+        self.finer = finer
+
+    def _add_points(self) -> None:
+        """More contact points, each with the slip of the nearest of those before."""
+        shape, slip = self._shape, self._memory
+        self._place_points(finer=True)
+        # the nearer two places on a facet are, the less their shape functions differ
+        apart = np.linalg.norm(self._shape[:, None] - shape, axis=2)
+        self._memory = np.ascontiguousarray(slip[:, apart.argmin(axis=1)])
 
     @property
     def tip(self) -> Array:
@@ -204,6 +223,8 @@ class PokeSystem:
             self.body.accept(x)
             self._known = []
         self._memory = self._slip.copy()
+        if not self.finer and self.overlap(x) > FINER_FROM * self.edge:
+            self._add_points()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
@@ -219,6 +240,7 @@ class PokeSystem:
             pose=(self.previous_axis, self._previous_start),
             slip=self._memory,
             gap=self._gap.copy(),
+            finer=self.finer,
             history=deepcopy(self.body.history),
             parts=None if self._parts is None else self._parts.state(),
         )
@@ -227,6 +249,8 @@ class PokeSystem:
         """Return to an earlier accepted state; each `Remembered` can be used only once."""
         self.previous, self.previous_depth = earlier.x, earlier.depth
         self.previous_axis, self._previous_start = earlier.pose
+        if self.finer != earlier.finer:
+            self._place_points(finer=earlier.finer)
         self._memory, self._gap = earlier.slip, earlier.gap
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
