@@ -101,8 +101,7 @@ def _push(
         way = 1.0 if goal > depth else -1.0
         system.turn(way)
         step, next_frame = FIRST_STEP, depth + way * scene.frame_spacing
-        unsettled = False  # a step has come to the goal, whose frame is still to be solved
-        while way * (goal - depth) > SAME or unsettled:
+        while way * (goal - depth) > SAME:
             wanted = way * min(way * next_frame, way * goal)
             target = way * min(way * depth + step, way * wanted)
             if SAME < way * (wanted - target) < 0.2 * step:
@@ -115,7 +114,7 @@ def _push(
             length = abs(target - depth)
             outcome, failed = solve_step(
                 system, block, guess, tolerance=tolerance, kept=frame, length=length,
-                between=0.0 if unsettled else BETWEEN * scene.solver.tolerance,
+                between=BETWEEN * scene.solver.tolerance if put_off else 0.0,
             )  # fmt: skip
             steps += 1
             if _log.isEnabledFor(logging.DEBUG):
@@ -133,13 +132,9 @@ def _push(
                 if put_off and length <= LONGEST:
                     next_frame = later
                 continue
-            nearly = outcome.status is not Status.CONVERGED
-            if nearly:
-                frame = False
-                next_frame = later if put_off else next_frame
-            unsettled = nearly and not put_off
-            if length > 0.0:
-                velocity = (outcome.x - x) / (target - depth)
+            if outcome.status is not Status.CONVERGED:
+                frame, next_frame = False, later
+            velocity = (outcome.x - x) / (target - depth)
             travelled += abs(target - depth)
             x, depth = outcome.x, target
             on_step(travelled / way_to_go)
