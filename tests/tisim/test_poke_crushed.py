@@ -174,3 +174,22 @@ def test_a_frame_that_nearly_converges_is_a_step(
     assert result.cost.step_cuts == 0
     assert (result.residual <= 5e-4).all()
     assert result.load == pytest.approx([first, first + 0.0003, 0.0008])
+
+
+@pytest.mark.parametrize(("depth", "refused"), [(0.0019, None), (0.0021, Status.PENETRATION)])
+def test_no_rod_goes_into_a_rigid_inclusion(
+    monkeypatch: pytest.MonkeyPatch, depth: float, refused: Status | None
+) -> None:
+    """Nor if the surface, squeezed aside, is outside of the rod."""
+    box = tisim.BoxInclusion(centre=(0.0, 0.0, 0.015), size=(0.02, 0.02, 0.03))
+    scene = replace(SCENE, block=tisim.Block(inclusion=box), direction=(0.0, 0.0, -1.0))
+    own = poke_mesh(
+        block=scene.block, site=scene.site, direction=scene.direction, rod=scene.rod, refinement=0.5
+    )
+    system = PokeSystem(scene, Discretisation.build(own, own.node_sets["base"]))
+    system.move_to(depth)
+    aside = system.previous - [0.0, 0.0, 0.005]
+    converged = Outcome(aside, Status.CONVERGED, 1e-5, 3)
+    monkeypatch.setattr(CondensedBlock, "solve", lambda *_, **__: converged)
+    found = solve_step(system, CondensedBlock(system), aside, tolerance=1e-4, kept=True, length=1.0)
+    assert found[1] is refused

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tisim.nonlinear.newton import Outcome
+from tisim.problems.indentation.rod import tissue_left
 from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
@@ -81,8 +82,13 @@ def overlap_fault(outcome: Outcome, system: PokeSystem) -> Status | None:
 
 
 def too_deep(x: Array, system: PokeSystem) -> bool:
-    """True if the surface at x (n, 3) is farther in the rod than a step may leave it."""
-    return system.overlap(x) > REFUSE_AT * system.edge
+    """True if the surface at x (n, 3) is farther in the rod than a step may leave it, or no tissue is left.
+
+    The rod touches the surface alone: nothing else keeps it out of a rigid inclusion when tissue is crushed.
+    """
+    if system.overlap(x) > REFUSE_AT * system.edge:
+        return True
+    return system.scene.mesh is None and tissue_left(system.scene, system.tip, system.axis)[0] == 0.0
 
 
 def next_step(step: float, iterations: int) -> float:
