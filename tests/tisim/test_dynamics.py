@@ -271,9 +271,8 @@ def test_free_flight_strains_nothing(method):
     )
     nodes = body.discretisation.mesh.nodes
     velocity = np.tile([0.5, -0.2, 0.1], (len(nodes), 1))
-    run = MARCH[method](
-        body, Solver(duration=0.05, stiffness_damping=1e-4, time_step=0.01), velocity=velocity
-    )
+    solver = Solver(duration=0.05, stiffness_damping=1e-4, time_step=0.01)
+    run = MARCH[method](body, solver, velocity=velocity)
     assert run.status is Status.CONVERGED
     np.testing.assert_allclose(run.frames.positions[-1], nodes + 0.05 * velocity, atol=1e-8)
 
