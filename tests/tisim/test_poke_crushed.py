@@ -79,16 +79,20 @@ def test_an_earlier_state_has_its_own_points(mesh: tisim.Mesh, monkeypatch: pyte
     system.accept(step_to(system, block, 0.0003))
     system.move_to(0.0006)
     system.touch(system.previous)
-    before, x = system.remembered(), system.previous
+    before, x, limit = system.remembered(), system.previous, system._law[4]
     wanted, _ = system.residual(x)
     monkeypatch.setattr(contact, "FINER_FROM", 0.0)
-    system.accept(step_to(system, block, 0.0006))
+    with monkeypatch.context() as then:
+        then.setattr(contact, "HARDENS_TO", 100.0)
+        system.accept(step_to(system, block, 0.0006))
     assert system.finer
+    assert system._law[4] > limit
     system.recall(before)
     system.move_to(0.0006)
     system.touch(x)
     assert not system.finer
     assert system.residual(x)[0] == pytest.approx(wanted, abs=1e-12)
+    assert system._law[4] == limit
 
 
 def test_a_poke_with_more_points_has_the_same_force(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,6 +103,38 @@ def test_a_poke_with_more_points_has_the_same_force(monkeypatch: pytest.MonkeyPa
     assert not np.array_equal(finer.rod_force, plain.rod_force)
     size = float(np.linalg.norm(plain.rod_force[-1]))
     assert finer.rod_force == pytest.approx(plain.rod_force, abs=0.03 * size)
+
+
+def test_the_limit_of_hardening_saves_iterations_and_leaves_equilibria(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(contact, "HARDENS_AT", 0.01)  # an eighth of the penetration
+    plain = solve_poke(SCENE)
+    monkeypatch.setattr(contact, "HARDENS_TO", 1.0)
+    monkeypatch.setattr(contact, "HARDENS_AT_LEAST_TO", 1e-3)
+    limited = solve_poke(SCENE)
+    assert limited.ok
+    assert limited.cost.newton_iterations < 0.75 * plain.cost.newton_iterations
+    assert limited.penetration == pytest.approx(plain.penetration, rel=0.02)
+    assert limited.rod_force == pytest.approx(
+        plain.rod_force, abs=0.01 * float(np.linalg.norm(plain.rod_force[-1]))
+    )
+
+
+def test_what_does_not_converge_states_the_residual_of_the_whole_law(
+    mesh: tisim.Mesh,
+) -> None:
+    system, block = start(mesh)
+    x = step_to(system, block, 0.0003)
+    system.move_to(0.0008)
+    system.touch(x)
+    stated = block.solve(x, tolerance=1e-6, max_iterations=0, kept=True)
+    system._law[4] = 1.0
+    residual, load = system.residual(x)
+    assert stated.residual == pytest.approx(float(np.linalg.norm(residual)) / load, rel=1e-9)
+    system._law[4] = 1e-4
+    residual, load = system.residual(x)
+    assert stated.residual != pytest.approx(float(np.linalg.norm(residual)) / load, rel=0.01)
 
 
 @pytest.mark.parametrize("length", [0.9 * LONGEST, 1.1 * LONGEST])

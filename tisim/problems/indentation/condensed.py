@@ -20,10 +20,10 @@ from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.linear.blocks import FullMatrix, pattern_of
 from tisim.linear.direct import Condensation, LinearSolveError
 from tisim.linear.krylov import FactorGMRES
-from tisim.nonlinear.contact_newton import contact_newton, settled
+from tisim.nonlinear.contact_newton import contact_newton, judged
 from tisim.nonlinear.newton import CRUSHED, Outcome
-from tisim.problems.indentation.far_field import FarField
-from tisim.problems.indentation.system import Drag, Part, PokeSystem
+from tisim.problems.indentation.far_field import FarField, Part
+from tisim.problems.indentation.system import Drag, PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -123,13 +123,14 @@ class CondensedBlock:
         previous, used = np.inf, 0
         rounds = 0
         while True:
-            residual, load = system.residual(x)
+            last = used >= max_iterations or rounds == ROUNDS
+            residual, load, done = judged(system, x, tolerance=tolerance, kept=kept, last=last)
             relative = float(np.linalg.norm(residual)) / load
             if not np.isfinite(relative):
                 return Outcome(x, Status.NOT_CONVERGED, np.inf, used)
-            if settled(system, residual, load, tolerance=tolerance, kept=kept):
+            if done:
                 return Outcome(x, Status.CONVERGED, relative, used)
-            if used >= max_iterations or rounds == ROUNDS:
+            if last:
                 return Outcome(x, Status.NOT_CONVERGED, relative, used)
             if rounds > 1 and relative > SLOW * previous:
                 self._stale = True

@@ -1,17 +1,37 @@
-"""Force and stiffness of the tissue far from the rod, condensed on the interface to the near tissue."""
+"""The near part of a block, and the tissue far from the rod, condensed on the interface to it."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tisim.linear.blocks import Pattern, distinct
+from tisim.discretisation.body import DiscretisedBody
+from tisim.linear.blocks import FullMatrix, Pattern, distinct
+from tisim.linear.krylov import FactorGMRES
 
 Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A subset of a block's elements as a separate system.
+
+    Attributes
+    ----------
+    body : the elements with the material.
+    linear : linear solver.
+    full : sparse matrix of the tangent.
+    slot : positions of the facets' node pairs in the tangent, shape (f, a, a).
+    """
+
+    body: DiscretisedBody
+    linear: FactorGMRES
+    full: FullMatrix
+    slot: NDArray[np.int32]
 
 
 class FarField:

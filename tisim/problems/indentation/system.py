@@ -16,7 +16,7 @@ from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
 from tisim.mesh.indentation import sliding
-from tisim.problems.indentation.far_field import FarField
+from tisim.problems.indentation.far_field import FarField, Part
 from tisim.problems.indentation.first_touch import FirstTouch, near_facets
 from tisim.problems.indentation.turning import axis_at, rotation
 from tisim.scene import Poke
@@ -32,6 +32,10 @@ STIFFER_SLIDING = 2.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
+# Beyond this multiple of the deepest penetration of the accepted state, and beyond this fraction of the edge
+# radius, the pressure at an iterate continues linearly. With the fifth power a start value deep in the rod
+# has forty times the force of equilibrium, and an iteration lowers its penetration by a fifth only.
+HARDENS_TO, HARDENS_AT_LEAST_TO = 1.25, 0.22
 TANGENT_STIFFNESS = 50.0
 # Upper limit of the edge radius in the contact stiffness, as a fraction of the rod's radius. With its whole
 # radius a hemisphere would penetrate so far that its force is 1.3 % low, whatever the mesh.
@@ -45,24 +49,6 @@ WATCHED_PER_SIDE = 7
 # Penetration of an accepted state, as a fraction of the edge radius, from which facets have FINER more points
 # of contact per side (and WATCHED_FINER are measured): over crushed tissue the edge passes between fewer.
 FINER_FROM, FINER, WATCHED_FINER = 0.22, 2, 10
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """A subset of a block's elements as a separate system.
-
-    Attributes
-    ----------
-    body : the elements with the material.
-    linear : linear solver.
-    full : sparse matrix of the tangent.
-    slot : positions of the facets' node pairs in the tangent, shape (f, a, a).
-    """
-
-    body: DiscretisedBody
-    linear: FactorGMRES
-    full: FullMatrix
-    slot: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,9 +122,8 @@ class PokeSystem:
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
-        self._law = np.array(
-            [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
-        )
+        tangent, limit = TANGENT_STIFFNESS * g / edge, HARDENS_AT_LEAST_TO * edge
+        self._law = np.array([normal * g / edge, tangent, scene.friction, HARDENS_AT * edge, limit])
         self._measure, self._energy, self._assemble = contact_kernels()
         self._place_points(finer=False)
         self.linear = FactorGMRES(discretisation.pattern)
@@ -226,11 +211,25 @@ class PokeSystem:
         if not self.finer and self.overlap(x) > FINER_FROM * self.edge:
             self._add_points()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
+        self._limit_hardening()
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
             self._known = []
+
+    def _limit_hardening(self) -> None:
+        """Set the penetration up to which the pressure hardens, from that of the accepted state."""
+        least = HARDENS_AT_LEAST_TO / HARDENS_AT * self._law[3]
+        self._law[4] = max(least, HARDENS_TO * -float(self._gap.min()))
+
+    def harden(self) -> bool:
+        """Raise the limit of hardening if the last residual's penetration is beyond it; True if it was."""
+        deepest = -float(self.report[3])
+        beyond = deepest > self._law[4]
+        if beyond:
+            self._law[4] = HARDENS_TO * deepest
+        return beyond
 
     def remembered(self) -> Remembered:
         """Data of the last accepted state, for `recall`."""
@@ -252,6 +251,7 @@ class PokeSystem:
         if self.finer != earlier.finer:
             self._place_points(finer=earlier.finer)
         self._memory, self._gap = earlier.slip, earlier.gap
+        self._limit_hardening()
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
             self._parts.restore(earlier.parts)
