@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from factory._archive import zip_faults
+from factory._clearance import clearance
 from factory._course import PHASES, states_at
 from factory._errors import InputError, one_line
 from factory._record import STATUSES
@@ -340,5 +341,6 @@ CHECKS: dict[str, Check] = {
     "base reaction = rod force": forces,
     "solves taken over": one_solve,
     "rod path and spacing": motion,
+    "tissue between rod and rigid": clearance,
     "time, phase and energy": clock,
 }
