@@ -13,9 +13,9 @@ import zarr
 from numpy.typing import NDArray
 
 from factory import open_dataset, verify_dataset
-from factory._clearance import SPACING, gaps_of, rod_points
-from factory._record import unit
-from factory._store import write_manifest
+from factory.checks.clearance import SPACING, gaps_of, rod_points
+from factory.simulation.record import unit
+from factory.store.files import write_manifest
 from factory.verify import app
 from tests.factory.conftest import run_app
 
