@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from factory.cli import counted
 from factory.reader import Dataset
 
 Array = NDArray[np.float64]
@@ -41,8 +42,9 @@ def clearance(data: Dataset) -> list[str]:
                 f"poke {index}, frame {first} at {depths[first] * 1e3:.4g} mm: "
                 f"the indenter is {_mm(gaps[first])} mm inside the {body}"
             )
-            more = f", as in {len(inside) - 1} more frames, up to {_mm(worst)} mm" if len(inside) > 1 else ""
-            faults.append(fault + more)
+            if len(inside) > 1:
+                fault += f", as in {counted(len(inside) - 1, 'more frame')}, up to {_mm(worst)} mm"
+            faults.append(fault)
     return faults
 
 

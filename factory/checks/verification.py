@@ -341,6 +341,6 @@ CHECKS: dict[str, Check] = {
     "base reaction = rod force": forces,
     "solves taken over": one_solve,
     "rod path and spacing": motion,
-    "tissue between rod and rigid": clearance,
+    "indenter outside rigid bodies": clearance,
     "time, phase and energy": clock,
 }

@@ -19,7 +19,7 @@ from factory.store.files import write_manifest
 from factory.verify import app
 from tests.factory.conftest import run_app
 
-CHECK = "tissue between rod and rigid"
+CHECK = "indenter outside rigid bodies"
 FLAT = {"radius_mm": 2.5, "tip": "flat", "edge_radius_mm": 1.0}
 BALL = {"radius_mm": 2.5, "tip": "hemisphere", "edge_radius_mm": 1.0}
 
