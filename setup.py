@@ -14,7 +14,7 @@ SHIPPED = {"recipes": "*.yaml", "materials": "*.yaml"}  # folders of datasets/, 
 
 
 class BuildWithRecipes(build_py):
-    """`build_py` that also copies what `factory._bundled.shipped_folder` looks for."""
+    """`build_py` that also copies what `factory.bundled.shipped_folder` looks for."""
 
     def run(self) -> None:
         super().run()

@@ -29,11 +29,11 @@ from rich.table import Table
 
 import tisim
 from benchmarks.whole import whole_file
-from factory._planned import PlannedPoke
-from factory._record import first_touch
-from factory._sampling import SIZE, grid_points, interpolation
 from factory.plan import make_plan
+from factory.plan.poke import PlannedPoke
 from factory.recipe import load_recipe
+from factory.sampling import SIZE, grid_points, interpolation
+from factory.simulation.record import first_touch
 
 Array = NDArray[np.float64]
 RINGS = (0.0, 5.0, 10.0, 20.0, 40.0, np.inf)  # mm

@@ -1,14 +1,16 @@
-from ._build import BuildProgress, Built, build_dataset
-from ._checks import Verification, verify_dataset
-from ._errors import InputError
-from ._planned import PlannedPoke
-from ._poke_data import PokeData
-from ._store import DamagedError
-from ._summary import Summary, summarise
-from .materials import Card, load_card, material_of
-from .plan import Plan, make_plan
+from .building.build import BuildProgress, Built, build_dataset
+from .bundled import recipe_names
+from .checks.verification import Verification, verify_dataset
+from .errors import InputError
+from .inspection.summary import Summary, summarise
+from .materials.cards import Card, load_card, material_of
+from .plan.dataset import Plan, make_plan
+from .plan.poke import PlannedPoke
 from .reader import Dataset, open_dataset
-from .recipe import Recipe, Shape, load_recipe, recipe_names
+from .recipe.model import Recipe, load_recipe
+from .recipe.shapes import Shape
+from .store.files import DamagedError
+from .store.poke_data import PokeData
 
 __all__ = [
     "BuildProgress",

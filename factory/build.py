@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from factory._bundled import recipe_names
-from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors
-from factory._errors import InputError
+from factory.bundled import recipe_names
+from factory.cli import Plugins, import_plugins, make_app, make_console, shown_errors
+from factory.errors import InputError
 from tisim import laws
 from tisim.options import Version
 from tisim.parallel.termination import terminable
@@ -19,7 +19,7 @@ from tisim.parallel.termination import terminable
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from factory._build import Built
+    from factory.building.build import Built
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -126,10 +126,10 @@ def main(
         with shown_errors("cannot use"):
             import_plugins(plugin)
 
-            from factory._build import build_dataset, check_target, warn_of_full_disk
-            from factory._report import Screen, derived_levels, effect_lines, estimate, plan_table
-            from factory.plan import make_plan
-            from factory.recipe import load_recipe
+            from factory.building.build import build_dataset, check_target, warn_of_full_disk
+            from factory.building.report import Screen, derived_levels, effect_lines, estimate, plan_table
+            from factory.plan.dataset import make_plan
+            from factory.recipe.model import load_recipe
             from tisim.parallel.pool import cores
 
             console = make_console()
@@ -187,7 +187,7 @@ def default_target(recipe: str, model: str, materials: Path | None) -> Path:
 def _report_stopped(target: Path | None) -> NoReturn:
     kept = 0
     if target is not None:
-        from factory._staging import Staging
+        from factory.store.staging import Staging
 
         kept = len(Staging(target.absolute()).finished())
     typer.echo(

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors
+from factory.cli import Plugins, import_plugins, make_app, make_console, shown_errors
 from tisim.options import Version
 
 EXAMPLES = """
@@ -52,8 +52,8 @@ def main(
     with shown_errors("cannot write the card:"):
         import_plugins(plugin)
 
-        from factory._card import AUTHOR, gather
-        from factory._card_files import FILES, check_out, write_card
+        from factory.publishing.facts import AUTHOR, gather
+        from factory.publishing.files import FILES, check_out, write_card
 
         check_out(dataset, out, overwrite=overwrite)
         facts = gather(dataset, licence=licence, authors=tuple(author or (AUTHOR,)), date=date)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from factory._cli import (
+from factory.cli import (
     Plugins,
     duration,
     import_plugins,
@@ -19,16 +19,16 @@ from factory._cli import (
     sides_text,
     size_text,
 )
-from factory._errors import InputError
+from factory.errors import InputError
 from tisim.options import Version
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from factory._poke_data import PokeData
-    from factory._summary import Summary
+    from factory.inspection.summary import Summary
     from factory.reader import Dataset
+    from factory.store.poke_data import PokeData
 
 EXAMPLES = """
 [bold]Examples[/bold]
@@ -54,7 +54,7 @@ def main(
     with shown_errors(f"{dataset}: cannot read"):
         import_plugins(plugin)
 
-        from factory._summary import summarise
+        from factory.inspection.summary import summarise
         from factory.reader import open_dataset
 
         console = make_console()
@@ -109,8 +109,8 @@ def _overview(summary: Summary) -> Table:
 def _reached(summary: Summary) -> Table:
     from rich.table import Table
 
-    from factory._features import measures
-    from factory._paper import PAPER, pokes_a_level
+    from factory.inspection.features import measures
+    from factory.inspection.paper_table import PAPER, pokes_a_level
 
     table = Table(title="Depths and forces reached, mean +- sd (the paper's below)")
     heads = ("deepest [mm]", "largest force [N]", "depth per frame [mm]", "force per frame [N]")
@@ -197,7 +197,7 @@ def _show_poke(data: Dataset, index: int, picture: Path | None, console: Console
             raise InputError(f"--picture {picture}: expected a name that ends in .png")
         if not len(poke.depth):
             raise InputError(f"--poke {index}: it has no frames to draw ({poke.message or poke.status})")
-        from factory._figures import draw_poke
+        from factory.inspection.figures import draw_poke
 
         draw_poke(poke, data, picture)
         console.print(f"picture: {picture}")
@@ -207,7 +207,7 @@ def _pieces(data: Dataset, index: int, poke: PokeData) -> Iterator[tuple[str, st
     """Phase and text of each piece of a poke's course: speed, duration, force at its first and last frame."""
     import numpy as np
 
-    from factory._course import PHASES, phases, pieces_at
+    from factory.recipe.course import PHASES, phases, pieces_at
 
     if poke.time is None or poke.dissipated_energy is None:
         return

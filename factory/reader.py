@@ -20,14 +20,14 @@ import zarr
 import zarr.storage
 from numpy.typing import NDArray
 
-from factory._course import PHASES
-from factory._errors import InputError, describe_os_error, one_line
-from factory._poke_data import PokeData
-from factory._record import STATUSES
-from factory._schema import NOT_SIMULATED, Spec, specs_of
-from factory._staging import building_folder
-from factory._store import DamagedError, altered_files, missing_files, plain_files, root_attributes
-from factory.plan import FORMAT
+from factory.errors import InputError, describe_os_error, one_line
+from factory.plan.dataset import FORMAT
+from factory.recipe.course import PHASES
+from factory.simulation.record import STATUSES
+from factory.store.files import DamagedError, altered_files, missing_files, plain_files, root_attributes
+from factory.store.poke_data import PokeData
+from factory.store.schema import NOT_SIMULATED, Spec, specs_of
+from factory.store.staging import building_folder
 from tisim import Inclusion, inclusions
 
 Counted = Literal["frame", "node", "triangle", "value"]

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from factory._cli import Plugins, import_plugins, make_app, make_console, shown_errors, size_text
-from factory._errors import InputError
+from factory.cli import Plugins, import_plugins, make_app, make_console, shown_errors, size_text
+from factory.errors import InputError
 from tisim.options import Version
 
 EXAMPLES = """
@@ -36,8 +36,8 @@ def main(
         with shown_errors(f"{dataset}: cannot release"):
             import_plugins(plugin)
 
-            from factory._archive import release_store
             from factory.reader import open_dataset
+            from factory.store.archive import release_store
             from tisim.parallel.termination import terminable
 
             if dataset.is_file():

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from factory._cli import Plugins, counted, import_plugins, make_app, make_console, shown_errors
-from factory._errors import InputError
+from factory.cli import Plugins, counted, import_plugins, make_app, make_console, shown_errors
+from factory.errors import InputError
 from tisim.options import Version
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def main(
 
         from rich.table import Table
 
-        from factory._checks import verify_dataset
+        from factory.checks.verification import verify_dataset
 
         if not assembly and (pokes is not None or workers is not None):
             raise InputError("--pokes and --workers: expected with --assembly")
@@ -105,7 +105,7 @@ def _assembled(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    from factory._assembly import check_assembly
+    from factory.checks.equilibrium import check_assembly
     from factory.reader import open_dataset
     from tisim.parallel.pool import cores
 

@@ -14,15 +14,15 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from factory import _build
-from factory._build import BuildProgress, build_dataset
-from factory._execution import SIMULATOR, run_poke
-from factory._planned import PlannedPoke
-from factory._record import Outcome
-from factory._staging import building_folder
-from factory._store import LEDGER
+from factory.building import build as building
+from factory.building.build import BuildProgress, build_dataset
 from factory.plan import Plan, make_plan
+from factory.plan.poke import PlannedPoke
 from factory.recipe import Recipe, load_recipe
+from factory.simulation.execution import SIMULATOR, run_poke
+from factory.simulation.record import Outcome
+from factory.store.files import LEDGER
+from factory.store.staging import building_folder
 from tests.unrendered import unrendered
 
 __all__ = ["unrendered"]
@@ -34,10 +34,11 @@ STANDIN = "tests.factory.standin:simulate"
 # run in its own process, as a user would, but with the stand-in for tisim
 COMMAND = """
 import functools, sys
-import factory._build, factory.build
+import factory.build
+from factory.building import build
 if __name__ == "__main__":
-    build = factory._build.build_dataset
-    factory._build.build_dataset = functools.partial(build, simulator="tests.factory.standin:simulate")
+    standin = "tests.factory.standin:simulate"
+    build.build_dataset = functools.partial(build.build_dataset, simulator=standin)
     factory.build.app()
 """
 
@@ -99,10 +100,10 @@ def _run_here(pokes: Sequence[PlannedPoke], *, workers: int, simulator: str) -> 
 
 @pytest.fixture
 def serial(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_build, "run_local", _run_here)
+    monkeypatch.setattr(building, "run_local", _run_here)
 
 
-Builder = Callable[..., _build.Built]
+Builder = Callable[..., building.Built]
 
 
 @pytest.fixture
@@ -110,7 +111,7 @@ def standin_build(serial: None) -> Builder:
     """Build in this process with the stand-in."""
     del serial
 
-    def run(plan: Plan, target: Path, **options: object) -> _build.Built:
+    def run(plan: Plan, target: Path, **options: object) -> building.Built:
         return build_dataset(plan, target, **{"simulator": STANDIN, **options})  # type: ignore[arg-type]
 
     return run
@@ -124,7 +125,7 @@ def _four_pokes(folder: Path) -> Plan:
 def build_here(plan: Plan, target: Path, *, simulator: str = STANDIN, **options: Any) -> None:
     """Build in this process, with the stand-in by default, for fixtures of a wider scope than a test."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_build, "run_local", _run_here)
+        patch.setattr(building, "run_local", _run_here)
         build_dataset(plan, target, simulator=simulator, **options)
 
 

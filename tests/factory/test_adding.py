@@ -13,8 +13,8 @@ import pytest
 import yaml
 
 import factory
-from factory._errors import InputError
 from factory.build import app as build_app
+from factory.errors import InputError
 from factory.verify import app as verify_app
 from tests.factory.conftest import ROOT, environment, run_app
 from tisim.parallel.extensions import digest_of_code

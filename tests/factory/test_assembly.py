@@ -11,11 +11,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from factory import _assembly
-from factory._assembly import NotCheckedError, check_assembly, check_poke, nodal_forces
-from factory._interior import Interior
-from factory._poke_data import PokeData
+from factory.checks import equilibrium
+from factory.checks.equilibrium import NotCheckedError, check_assembly, check_poke, nodal_forces
+from factory.checks.interior import Interior
 from factory.reader import Dataset, open_dataset
+from factory.store.poke_data import PokeData
 from factory.verify import app
 from tests.factory.conftest import TINY, run_app, simulate_here
 from tisim import Block, Rod
@@ -86,10 +86,10 @@ def _lifted(poke: PokeData) -> PokeData:
 def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> None:
     """Newton's step, ten times as long: the part that brings the interior nearest to equilibrium first."""
     data = open_dataset(simulated)
-    mesh, poke = _assembly._mesh(data, 0), data.poke(0)
+    mesh, poke = equilibrium._mesh(data, 0), data.poke(0)
     surface = np.unique(mesh.facet_sets["surface"])
     moved = poke.surface - poke.surface_rest
-    inside = Interior(mesh, _assembly._material(data, 0), surface, moved, np.full(2, 1e-5))
+    inside = Interior(mesh, equilibrium._material(data, 0), surface, moved, np.full(2, 1e-5))
     at_rest = next(iter(inside))
     body, solver, free = inside._body, inside._discretisation.solver, inside._free
     away = at_rest.copy()
@@ -144,7 +144,7 @@ def test_a_surface_that_holds_no_equilibrium_is_counted(
         return dataclasses.replace(poke, surface=surface)
 
     _change(monkeypatch, folded)
-    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    monkeypatch.setattr(equilibrium, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
     found = check_assembly(open_dataset(simulated), pokes=1, workers=1)
     assert (found.pokes, found.frames, found.faults, found.no_interior) == (1, 1, [], {0: 1})
     done = run_app(app, simulated, "--assembly", "--pokes", 1)
@@ -174,9 +174,9 @@ def test_another_mesh_and_other_materials_are_said_not_to_be_checked(
     simulated: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     data = open_dataset(simulated)
-    whole = _assembly.poke_mesh
+    whole = equilibrium.poke_mesh
     with monkeypatch.context() as patch:
-        patch.setattr(_assembly, "poke_mesh", lambda **k: whole(**{**k, "refinement": 0.7}))
+        patch.setattr(equilibrium, "poke_mesh", lambda **k: whole(**{**k, "refinement": 0.7}))
         with pytest.raises(NotCheckedError, match="not the one that this version of tisim makes"):
             next(check_poke(data, 0))
     stated = data.attributes["identity"]["materials"]["S0"]
@@ -199,7 +199,7 @@ def test_pokes_that_cannot_be_checked_are_listed(
     finished_store: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The meshes of the stand-in are not tisim's."""
-    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    monkeypatch.setattr(equilibrium, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
     found = check_assembly(open_dataset(finished_store), pokes=2, workers=1)
     assert (found.pokes, found.frames, found.faults, found.largest) == (0, 0, [], None)
     assert len(found.not_checked) == 2

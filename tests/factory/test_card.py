@@ -18,10 +18,13 @@ import yaml
 import zarr
 
 import factory.card
-from factory import _card, _card_files, _paper, open_dataset
-from factory._card_files import FILES
-from factory._store import LEDGER, MANIFEST
+from factory import open_dataset
+from factory.inspection import paper_table
 from factory.plan import Plan
+from factory.publishing import facts as card_facts
+from factory.publishing import files as card_files
+from factory.publishing.files import FILES
+from factory.store.files import LEDGER, MANIFEST
 from tests.factory.conftest import Builder, digest, run_app
 from tests.factory.standin import site_code
 
@@ -47,7 +50,7 @@ def _lines(path: Path) -> list[dict[str, str]]:
 
 
 def test_its_files_are_all_there(card: Path, page: str) -> None:
-    assert {path.name for path in card.iterdir()} == set(_card_files.FILES)
+    assert {path.name for path in card.iterdir()} == set(card_files.FILES)
     assert not list(card.parent.glob(".*")), "nothing of the making is left beside it"
     for picture in re.findall(r"!\[.*?\]\((.*?)\)", page):
         assert (card / picture).read_bytes().startswith(b"\x89PNG")
@@ -94,7 +97,7 @@ def test_the_papers_figures_stand_beside_ours(card: Path, page: str, quick_store
     force = np.linalg.norm(store["rod_force"][:], axis=1)
     level = store["poke_softness"][:][store["frame_poke"][:]]
     for number, row in enumerate(_lines(card / "softness.csv")):
-        paper = _paper.PAPER["ogden"][row["softness"]]
+        paper = paper_table.PAPER["ogden"][row["softness"]]
         assert row["paper_largest_force_mean_N"] == f"{paper[1][0]:.2f}"
         assert row["paper_pokes"] == "440"
         assert float(row["frame_force_mean_N"]) == pytest.approx(force[level == number].mean(), rel=1e-5)
@@ -162,8 +165,8 @@ def test_the_date_is_the_stores(store: Path) -> None:
     data = open_dataset(store)
     for seconds, date in ((0, None), (1.7e9, datetime.date(2023, 11, 14))):
         os.utime(store / MANIFEST, (seconds, seconds))
-        assert _card._completed(data) == date
-    assert _card.gather(store, date="2031-02-03").date == datetime.date(2031, 2, 3)
+        assert card_facts._completed(data) == date
+    assert card_facts.gather(store, date="2031-02-03").date == datetime.date(2031, 2, 3)
 
 
 def test_failed_pokes_are_counted_and_end_with_1(
@@ -250,6 +253,6 @@ def test_overwriting_leaves_other_files_alone(card: Path, quick_store: Path, tmp
     (out / "card.md").write_text("old")
     result = run_app(factory.card.app, quick_store, "--out", out, "--overwrite", *OPTIONS)
     assert result.exit_code == 0, result.output
-    assert {path.name for path in out.iterdir()} == {*_card_files.FILES, "mine.txt"}
-    for name in _card_files.FILES:
+    assert {path.name for path in out.iterdir()} == {*card_files.FILES, "mine.txt"}
+    for name in card_files.FILES:
         assert (out / name).read_bytes() == (card / name).read_bytes(), name

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import yaml
 
-from factory._errors import InputError
 from factory.build import split_names
+from factory.errors import InputError
 from factory.materials import LAWS, load_card
 from factory.plan import make_plan
 from factory.reader import open_dataset
@@ -95,7 +95,7 @@ def test_a_law_that_refuses_the_moduli_of_a_card_is_named(
     del content["laws"]["ogden"]
     for name in tiny.levels:
         (tmp_path / f"{name}.yaml").write_text(yaml.safe_dump({**content, "material": name}))
-    monkeypatch.setattr("factory.materials.material_from_moduli", refused)
+    monkeypatch.setattr("factory.materials.cards.material_from_moduli", refused)
     with pytest.raises(InputError, match=r"S0\.yaml: law ogden does not take the moduli of S0: bulk must be"):
         make_plan(tiny, "ogden", tmp_path)
 

@@ -15,11 +15,11 @@ from pathlib import Path
 import distributed
 import pytest
 
-from factory import _cluster
-from factory._build import BuildProgress, build_dataset
-from factory._errors import InputError
-from factory._staging import Staging
+from factory.building.build import BuildProgress, build_dataset
+from factory.errors import InputError
 from factory.plan import Plan
+from factory.simulation import cluster as cluster_module
+from factory.store.staging import Staging
 from tests.factory.conftest import Builder, digest, environment
 
 SIMULATOR = "tests.factory.standin:simulate"
@@ -27,7 +27,7 @@ SIMULATOR = "tests.factory.standin:simulate"
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_cluster, "NOTICE_SECONDS", 0.3)
+    monkeypatch.setattr(cluster_module, "NOTICE_SECONDS", 0.3)
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ class Processes:
         options = ("--no-nanny", "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1")
         process = self.start("distributed.cli.dask_worker", self.address, *options, **variables)
         deadline = time.monotonic() + 120
-        while not _cluster._workers(self.address, 60):
+        while not cluster_module._workers(self.address, 60):
             assert process.poll() is None
             assert time.monotonic() < deadline
             time.sleep(0.1)
@@ -149,9 +149,9 @@ def test_workers_that_would_give_other_results_are_refused(
     plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     threads: int, here: dict[str, str], sentence: str,
 ) -> None:  # fmt: skip
-    facts = _cluster.worker_facts()
+    facts = cluster_module.worker_facts()
     own = iter([{**facts, **here}])  # asked in this process first
-    monkeypatch.setattr(_cluster, "worker_facts", lambda: next(own, facts))
+    monkeypatch.setattr(cluster_module, "worker_facts", lambda: next(own, facts))
     with (
         distributed.LocalCluster(
             n_workers=1, threads_per_worker=threads, processes=False, dashboard_address=None

@@ -17,16 +17,16 @@ from typer.testing import CliRunner
 import factory
 import factory.build
 import tisim
-from factory import _build
 from factory.__main__ import app as factory_app
-from factory._build import Built, build_dataset
-from factory._cli import make_console
-from factory._figures import draw_preview, preview_of
-from factory._report import Screen, estimate, preview_path, traces_of
-from factory._store import manifest_digest
 from factory.build import default_target
+from factory.building import build as building
+from factory.building.build import Built, build_dataset
+from factory.building.report import Screen, estimate, preview_path, traces_of
+from factory.cli import make_console
+from factory.inspection.figures import draw_preview, preview_of
 from factory.plan import Plan
 from factory.reader import open_dataset
+from factory.store.files import manifest_digest
 from tests.factory.conftest import ROOT, TINY, digest, environment, run_app
 
 run = CliRunner().invoke
@@ -36,7 +36,7 @@ run = CliRunner().invoke
 def _standin(monkeypatch: pytest.MonkeyPatch, serial: None) -> None:
     del serial
     stand_in = functools.partial(build_dataset, simulator="tests.factory.standin:simulate")
-    monkeypatch.setattr(_build, "build_dataset", stand_in)
+    monkeypatch.setattr(building, "build_dataset", stand_in)
 
 
 def _call(*arguments: str) -> tuple[int, str, str]:

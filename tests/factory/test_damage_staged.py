@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from factory._build import BuildProgress
-from factory._errors import InputError
-from factory._staging import Staging, building_folder
 from factory.build import app as build_app
+from factory.building.build import BuildProgress
+from factory.errors import InputError
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
+from factory.store.staging import Staging, building_folder
 from factory.verify import app as verify_app
 from tests.factory.conftest import Builder, digest, run_app
 

@@ -13,14 +13,15 @@ import numpy as np
 import pytest
 import zarr
 
-from factory import _build, verify_dataset
-from factory._build import Built, build_dataset
-from factory._errors import InputError
-from factory._store import MANIFEST, DamagedError, altered_files, write_manifest
+from factory import verify_dataset
 from factory.build import app as build_app
+from factory.building import build as building
+from factory.building.build import Built, build_dataset
+from factory.errors import InputError
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
 from factory.reader import open_dataset
+from factory.store.files import MANIFEST, DamagedError, altered_files, write_manifest
 from factory.verify import app as verify_app
 from tests.factory.conftest import Builder, digest, run_app
 
@@ -382,7 +383,7 @@ def _standin(monkeypatch: pytest.MonkeyPatch) -> None:
     def build(*args: Any, **kwargs: Any) -> Built:
         return build_dataset(*args, **{**kwargs, "simulator": "tests.factory.standin:simulate"})
 
-    monkeypatch.setattr(_build, "build_dataset", build)
+    monkeypatch.setattr(building, "build_dataset", build)
 
 
 @pytest.mark.usefixtures("unrendered")

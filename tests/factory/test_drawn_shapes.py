@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-from factory._errors import InputError
+from factory.errors import InputError
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe
 from tests.factory.conftest import TINY

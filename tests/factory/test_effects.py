@@ -11,8 +11,8 @@ import yaml
 from typer.testing import CliRunner
 
 import tisim
-from factory._errors import InputError
 from factory.build import app
+from factory.errors import InputError
 from factory.materials import load_card, material_of
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset

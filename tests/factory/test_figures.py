@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from factory._figures import _cut
+from factory.inspection.figures import _cut
 
 # a box of 2 x 4 x 3, two triangles per face
 _CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-2.0, 2.0) for z in (0.0, 3.0)])

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from factory._record import first_touch
-from factory._sampling import (
+from factory.sampling import (
     LEVELS,
     SIZE,
     grid_points,
@@ -21,6 +20,7 @@ from factory._sampling import (
     profiles,
     surface_triangles,
 )
+from factory.simulation.record import first_touch
 from tests.factory.standin import block_mesh
 from tisim.bodies import BoxInclusion, CylinderInclusion, Rod, SphereInclusion
 from tisim.material import Material

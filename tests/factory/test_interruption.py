@@ -24,13 +24,14 @@ import numpy as np
 import psutil
 import pytest
 
-from factory import _assemble, _local, _staging
-from factory._build import build_dataset
-from factory._errors import InputError
-from factory._staging import Staging, building_folder
+from factory.building.build import build_dataset
+from factory.errors import InputError
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset
 from factory.recipe import Recipe
+from factory.simulation import local
+from factory.store import assemble, staging
+from factory.store.staging import Staging, building_folder
 from tests.factory.conftest import Builder, digest, environment
 
 
@@ -46,8 +47,8 @@ class Reaper:
         for name in ("replace", "rename", "unlink", "rmdir"):
             monkeypatch.setattr(Path, name, self.mortal(getattr(Path, name)))
         half = SimpleNamespace(rmtree=self.mortal(shutil.rmtree, first=_half_gone))
-        monkeypatch.setattr(_staging, "shutil", half)
-        monkeypatch.setattr(_assemble, "shutil", half)
+        monkeypatch.setattr(staging, "shutil", half)
+        monkeypatch.setattr(assemble, "shutil", half)
 
     def mortal(self, action: Callable[..., Any], first: Callable[..., None] | None = None) -> Any:
         def call(*args: Any, **kwargs: Any) -> Any:
@@ -126,8 +127,8 @@ def short(tiny: Recipe) -> Plan:
 def _few_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write five of the store's fifty arrays, one of each kind: kills do not depend on the array."""
     kept = ("done", "message", "depth", "rod_force", "surface_displacement")
-    specs = _assemble._specs
-    monkeypatch.setattr(_assemble, "_specs", lambda plan: {n: s for n, s in specs(plan).items() if n in kept})
+    specs = assemble._specs
+    monkeypatch.setattr(assemble, "_specs", lambda plan: {n: s for n, s in specs(plan).items() if n in kept})
 
 
 @pytest.mark.usefixtures("_few_arrays")
@@ -309,14 +310,14 @@ def test_ctrl_c_ends_cleanly_and_goes_on(
 
 _FIRST_WORKER = """
 from pathlib import Path
-from factory import _local
+from factory.simulation import local
 if __name__ == "__main__":
-    workers = [_local._start("math:sqrt") for _ in range(2)]
+    workers = [local._start("math:sqrt") for _ in range(2)]
     for worker in workers:
         status = Path(f"/proc/{worker.process.pid}/status").read_text()
         fields = dict(line.split(":", 1) for line in status.splitlines())
         print(int(fields["SigBlk"], 16) >> 1 & 1)  # bit 1: SIGINT
-        _local._stop(worker)
+        local._stop(worker)
 """
 
 
@@ -334,10 +335,10 @@ def test_no_worker_sees_ctrl_c_not_even_the_first(tmp_path: Path) -> None:
 def test_a_worker_that_loads_while_the_build_is_stopped_says_nothing(
     simulator: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(_local, "end_with_parent", lambda _: None)
+    monkeypatch.setattr(local, "end_with_parent", lambda _: None)
     ours, theirs = multiprocessing.Pipe()
     ours.close()
-    _local._work(theirs, simulator, 0)
+    local._work(theirs, simulator, 0)
 
 
 def _alive_in_group(group: int) -> list[str]:

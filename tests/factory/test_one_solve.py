@@ -11,11 +11,11 @@ import pytest
 import zarr
 
 from factory import open_dataset, verify_dataset
-from factory._build import build_dataset
-from factory._checks import one_solve as one_solve_faults
-from factory._similar import modulus_ratio, one_solve, scale_with_modulus
-from factory._staging import Staging
+from factory.building.build import build_dataset
+from factory.checks.verification import one_solve as one_solve_faults
 from factory.plan import Plan
+from factory.plan.shared_solves import modulus_ratio, one_solve, scale_with_modulus
+from factory.store.staging import Staging
 from tests.factory.conftest import Builder
 from tisim import Material, Prony, laws, simulate
 

@@ -20,16 +20,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import factory.card
-from factory import _assembly, _figures, open_dataset, verify_dataset
-from factory._figures import draw_preview
-from factory._record import Trace
-from factory._sampling import grid_points, level_depths, profiles
-from factory._schema import SPECS
-from factory._store import write_manifest
+from factory import open_dataset, verify_dataset
+from factory.checks import equilibrium
 from factory.inspect import app as inspect_app
+from factory.inspection import figures
+from factory.inspection.figures import draw_preview
 from factory.plan import make_plan
 from factory.recipe import load_recipe
 from factory.release import app as release_app
+from factory.sampling import grid_points, level_depths, profiles
+from factory.simulation.record import Trace
+from factory.store.files import write_manifest
+from factory.store.schema import SPECS
 from factory.verify import app as verify_app
 from learn.data import open_store
 from learn.evaluation.predictions import interpolation_error_mm
@@ -120,7 +122,7 @@ def test_xarray_opens_it(small: Path) -> None:
 def test_verify_and_inspect_know_its_blocks(
     small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(_assembly, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
+    monkeypatch.setattr(equilibrium, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1))
     done = run_app(verify_app, small, "--assembly", "--workers", 1)
     assert done.exit_code == 0, done.output
     assert "6 pokes, 6 frames: no fault" in done.output
@@ -234,10 +236,10 @@ def test_the_preview_shows_every_block(tmp_path: Path) -> None:
     assert (tmp_path / "preview.png").stat().st_size > 10_000
     figure = Figure()
     sites, top = figure.subplots(1, 2)
-    _figures._sites(plan, traces, sites)
+    figures._sites(plan, traces, sites)
     half = 1e3 * np.array(plan.blocks)[:, :2] / 2
     assert (sites.get_xlim()[1], sites.get_ylim()[1]) == pytest.approx(half.max(axis=0))
     outlines = [patch.get_bbox().max for patch in sites.patches if isinstance(patch, Rectangle)]
     np.testing.assert_allclose(sorted(map(tuple, outlines)), np.unique(half, axis=0))
-    _figures._top(plan, traces, top, figure)
+    figures._top(plan, traces, top, figure)
     assert (top.get_xlim()[1], top.get_ylim()[1]) == pytest.approx((22, 29))

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import yaml
 
-from factory._errors import InputError
 from factory.build import app as build_app
+from factory.errors import InputError
 from factory.plan import make_plan
 from factory.recipe import Recipe, load_recipe
 from tests.factory.conftest import TINY, run_app

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from factory._build import build_dataset, in_turns
-from factory._errors import InputError
-from factory._features import features
-from factory._staging import Staging, building_folder
-from factory._summary import summarise
 from factory.build import app
+from factory.building.build import build_dataset, in_turns
+from factory.errors import InputError
 from factory.inspect import app as inspect_app
+from factory.inspection.features import features
+from factory.inspection.summary import summarise
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset
 from factory.recipe import load_recipe
+from factory.store.staging import Staging, building_folder
 from factory.verify import app as verify_app
 from tests.factory.conftest import Builder, digest, run_app
 
@@ -52,7 +52,7 @@ def test_its_preview_shows_what_there_is(
 ) -> None:
     drawn: list[int] = []
     monkeypatch.setattr(
-        "factory._figures.draw_preview", lambda _plan, traces, _path, _of: drawn.append(len(traces))
+        "factory.inspection.figures.draw_preview", lambda _plan, traces, _path, _of: drawn.append(len(traces))
     )
     done = run_app(app, "--model", "ogden", "--recipe", tiny_file, "--out", stopped, "--partial")
     assert done.exit_code == 0, done.output

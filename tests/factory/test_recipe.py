@@ -14,10 +14,10 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from factory._errors import InputError
-from factory._input import read_yaml
+from factory.errors import InputError
 from factory.plan import Plan, make_plan
 from factory.recipe import Recipe, load_recipe, recipe_names
+from factory.strict_yaml import read_yaml
 from tests.factory.conftest import TINY
 from tisim.bodies import BoxInclusion, CylinderInclusion, SphereInclusion
 

@@ -15,8 +15,9 @@ import factory.card
 import factory.inspect
 import factory.release
 import factory.verify
-from factory import _archive, open_dataset
-from factory._store import LEDGER
+from factory import open_dataset
+from factory.store import archive as store_archive
+from factory.store.files import LEDGER
 from tests.factory.conftest import digest, run_app
 
 
@@ -85,12 +86,12 @@ def test_a_damaged_zip_is_found(released: Path, tmp_path: Path) -> None:
     assert whole.count(content) == 1
     bad = tmp_path / "bad.zarr.zip"
     bad.write_bytes(whole.replace(content, content[:-1] + bytes([content[-1] ^ 1])))
-    assert _archive.zip_faults(bad) == [f"{name}: sha256 differs from the manifest"]
+    assert store_archive.zip_faults(bad) == [f"{name}: sha256 differs from the manifest"]
     assert run_app(factory.verify.app, bad).exit_code == 1
     bad.write_bytes(whole)
     with zipfile.ZipFile(bad, "a") as archive:
         archive.writestr("depth/more", "x")
-    assert _archive.zip_faults(bad) == ["depth/more: not in the manifest"]
+    assert store_archive.zip_faults(bad) == ["depth/more: not in the manifest"]
     bad.write_bytes(whole[: len(whole) // 2])
     result = run_app(factory.inspect.app, bad)
     assert (result.exit_code, "cannot be read as a zip" in result.stderr) == (2, True), result.output
@@ -110,13 +111,13 @@ def test_a_store_that_changes_on_the_way_gives_no_zip(
     store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The written content, not the content as read, is compared with the manifest."""
-    sound = _archive.check_sound
+    sound = store_archive.check_sound
 
     def change(path: Path) -> None:
         sound(path)
         (path / "depth" / "zarr.json").write_text("{}")
 
-    monkeypatch.setattr(_archive, "check_sound", change)
+    monkeypatch.setattr(store_archive, "check_sound", change)
     result = run_app(factory.release.app, store, "--out", tmp_path / "a.zarr.zip")
     assert result.exit_code == 2
     assert "depth/zarr.json: sha256 differs from the manifest" in result.stderr
@@ -154,7 +155,7 @@ def test_an_interrupted_release_begins_anew(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(_archive, "zip_faults", interrupt)
+        patch.setattr(store_archive, "zip_faults", interrupt)
         result = run_app(factory.release.app, finished_store, "--out", target)
     assert (result.exit_code, list(tmp_path.iterdir())) == (130, [])
     (tmp_path / "store.zarr.zip.0a1b2c3d.part").write_bytes(released.read_bytes()[:1000])

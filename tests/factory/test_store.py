@@ -15,12 +15,12 @@ import xarray
 import zarr
 from typer.testing import CliRunner
 
-from factory import _schema
-from factory._build import BuildProgress
-from factory._store import write_manifest
+from factory.building.build import BuildProgress
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
 from factory.reader import Dataset, open_dataset
+from factory.store import schema
+from factory.store.files import write_manifest
 from factory.verify import app as verify_app
 from tests.factory import standin
 from tests.factory.conftest import Builder
@@ -60,7 +60,7 @@ print("opened")
 
 def test_every_array_says_what_it_is(store: Path) -> None:
     data = xarray.open_zarr(store)
-    assert set(data.data_vars) == set(_schema.SPECS)
+    assert set(data.data_vars) == set(schema.SPECS)
     for name, array in data.data_vars.items():
         assert array.attrs["long_name"], name
         if array.dtype.kind == "f" and name != "parameter":
@@ -110,13 +110,13 @@ def test_several_shards_hold_the_same_as_one(
 
     small = {
         name: replace(spec, chunk=3, shard=6) if spec.shard > spec.chunk else spec
-        for name, spec in _schema.SPECS.items()
+        for name, spec in schema.SPECS.items()
     }
-    monkeypatch.setattr(_schema, "SPECS", small)
+    monkeypatch.setattr(schema, "SPECS", small)
     standin_build(plan, tmp_path / "b.zarr")
     one, two = open_dataset(store), open_dataset(tmp_path / "b.zarr")
     assert len(list((tmp_path / "b.zarr" / "surface_displacement").rglob("c/*/*"))) > 10
-    for name in _schema.SPECS:
+    for name in schema.SPECS:
         np.testing.assert_array_equal(one.array(name)[...], two.array(name)[...], err_msg=name)
 
 

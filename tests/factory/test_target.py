@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from factory import _report
-from factory._build import BuildProgress, build_dataset
-from factory._cli import make_console
-from factory._errors import InputError
-from factory._staging import Staging, building_folder
-from factory._summary import summarise
+from factory.building import report
+from factory.building.build import BuildProgress, build_dataset
+from factory.cli import make_console
+from factory.errors import InputError
 from factory.inspect import app as inspect_app
+from factory.inspection.summary import summarise
 from factory.plan import Plan, make_plan
 from factory.recipe import load_recipe
+from factory.store.staging import Staging, building_folder
 from tests.factory.conftest import TINY, Builder, digest, run_app
 
 
@@ -107,23 +107,23 @@ def test_a_preview_is_of_the_store_beside_it(
     plan: Plan, other: Plan, standin_build: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """While a whole store is to be replaced, its preview stays."""
-    monkeypatch.setattr(_report, "_PICTURE_SECONDS", -1.0)
+    monkeypatch.setattr(report, "_PICTURE_SECONDS", -1.0)
     target, shown = tmp_path / "a.zarr", b""
     seen: set[bytes] = set()
     for one, overwrite in ((plan, False), (other, True)):
-        screen = _report.Screen(
-            one, target, make_console(), _report.estimate(one, target, 1, overwrite=overwrite)
+        screen = report.Screen(
+            one, target, make_console(), report.estimate(one, target, 1, overwrite=overwrite)
         )
 
-        def watch(state: BuildProgress, screen: _report.Screen = screen) -> None:
+        def watch(state: BuildProgress, screen: report.Screen = screen) -> None:
             screen.update(state)
-            seen.add(_report.preview_path(target).read_bytes())
+            seen.add(report.preview_path(target).read_bytes())
 
         built = standin_build(one, target, overwrite=overwrite, on_progress=watch)
         if overwrite:
             assert seen == {shown}
         screen.finish(built)
-        shown = _report.preview_path(target).read_bytes()
+        shown = report.preview_path(target).read_bytes()
         seen.clear()
 
 
@@ -186,7 +186,7 @@ def test_a_builder_that_waits_for_the_lock_of_a_finished_one_starts_afresh(
             os.unlink(path)  # noqa: PTH108
         return handle
 
-    monkeypatch.setattr("factory._staging.os.open", race)
+    monkeypatch.setattr("factory.store.staging.os.open", race)
     with Staging(target):
         monkeypatch.undo()
         assert (building_folder(target) / "lock").is_file()

@@ -13,12 +13,12 @@ import pytest
 import zarr
 
 import factory
-from factory._course import PHASES
-from factory._schema import COURSE_SPECS, SPECS
-from factory._store import write_manifest
 from factory.build import app as build_app
 from factory.inspect import app as inspect_app
 from factory.plan import Plan
+from factory.recipe.course import PHASES
+from factory.store.files import write_manifest
+from factory.store.schema import COURSE_SPECS, SPECS
 from factory.verify import app as verify_app
 from tests.factory.conftest import Builder, build_here, digest, environment, run_app
 from tests.factory.timed_cases import SMALL, card, recipe

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import factory
-from factory._course import PHASES, states_at
-from factory._errors import InputError
+from factory.errors import InputError
+from factory.recipe.course import PHASES, states_at
 from tests.factory.conftest import TINY
 from tests.factory.timed_cases import FIBRES, SOFTENING, TIMED, VISCOUS, card, recipe
 from tisim import parts

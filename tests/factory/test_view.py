@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from factory._archive import release_store
 from factory.reader import open_dataset
+from factory.store.archive import release_store
 from tisim.view import view_of_file
 from tisim.view.command import _bare
 

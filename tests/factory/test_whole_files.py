@@ -15,11 +15,12 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
-from factory import _archive, _card_files
-from factory._figures import draw_preview, preview_of
-from factory._staging import write_atomic
-from factory._store import MANIFEST
+from factory.inspection.figures import draw_preview, preview_of
 from factory.plan import Plan
+from factory.publishing import files as card_files
+from factory.store import archive as store_archive
+from factory.store.files import MANIFEST
+from factory.store.staging import write_atomic
 
 Meeting = Callable[[Any, str, Callable[[], None]], None]
 
@@ -81,13 +82,15 @@ def test_two_previews(plan: Plan, tmp_path: Path, meets: Meeting) -> None:
 
 def test_two_releases_of_a_store(finished_store: Path, tmp_path: Path, meets: Meeting) -> None:
     target = tmp_path / "store.zarr.zip"
-    sums = _archive.sums_file(target)
+    sums = store_archive.sums_file(target)
     meets(
-        _archive, "zip_faults", lambda: (_archive.release_store(finished_store, target), target.unlink())[1]
+        store_archive,
+        "zip_faults",
+        lambda: (store_archive.release_store(finished_store, target), target.unlink())[1],
     )
-    released = _archive.release_store(finished_store, target)
+    released = store_archive.release_store(finished_store, target)
     assert sorted(tmp_path.iterdir()) == [target, sums]
-    assert _archive.zip_faults(target) == []
+    assert store_archive.zip_faults(target) == []
     assert sums.read_text() == f"{released.sha256}  {target.name}\n"
 
 
@@ -101,8 +104,8 @@ def test_a_release_removes_what_killed_ones_left(finished_store: Path, tmp_path:
         path.write_bytes(b"PK")
     with held.open("rb") as handle:
         fcntl.flock(handle, fcntl.LOCK_EX)
-        _archive.release_store(finished_store, target)
-    assert sorted(tmp_path.iterdir()) == sorted([target, _archive.sums_file(target), held, foreign])
+        store_archive.release_store(finished_store, target)
+    assert sorted(tmp_path.iterdir()) == sorted([target, store_archive.sums_file(target), held, foreign])
 
 
 def test_two_cards(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, meets: Meeting) -> None:
@@ -115,15 +118,15 @@ def test_two_cards(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, meets: Meeti
         summary = SimpleNamespace(model=None, done=None, levels=None)
         return SimpleNamespace(data=data, summary=summary, rows=text, shown=0, sums={}, text=text)
 
-    monkeypatch.setattr(_card_files, "write_features", lambda text, path: path.write_text(text))
-    monkeypatch.setattr(_card_files, "write_softness", lambda *words: words[-1].touch())
-    monkeypatch.setattr(_card_files, "draw_features", lambda _, path: path.touch())
-    monkeypatch.setattr(_card_files, "draw_poke", lambda *words: words[-1].touch())
-    monkeypatch.setattr(_card_files, "page", lambda facts: facts.text)
-    meets(_card_files, "page", lambda: _card_files.write_card(facts("other"), out))
-    _card_files.write_card(facts("one"), out)
+    monkeypatch.setattr(card_files, "write_features", lambda text, path: path.write_text(text))
+    monkeypatch.setattr(card_files, "write_softness", lambda *words: words[-1].touch())
+    monkeypatch.setattr(card_files, "draw_features", lambda _, path: path.touch())
+    monkeypatch.setattr(card_files, "draw_poke", lambda *words: words[-1].touch())
+    monkeypatch.setattr(card_files, "page", lambda facts: facts.text)
+    meets(card_files, "page", lambda: card_files.write_card(facts("other"), out))
+    card_files.write_card(facts("one"), out)
     assert ((out / "features.csv").read_text(), (out / "card.md").read_text()) == ("one", "one")
-    meets(_card_files, "page", _stop)
+    meets(card_files, "page", _stop)
     with pytest.raises(KeyboardInterrupt):
-        _card_files.write_card(facts("new"), out)
+        card_files.write_card(facts("new"), out)
     assert list(out.parent.iterdir()) == [out]

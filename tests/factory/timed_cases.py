@@ -53,7 +53,8 @@ protocol:
     - {to_mm: 0, speed_mm_per_s: 5}
     - {hold_s: 4, frames: 2}
 """
-TIMED = re.sub(r"\nprotocol: .*\n", PROTOCOL, TINY)
+# of a block so high that tissue is left above the inclusion at 30 mm
+TIMED = re.sub(r"\nprotocol: .*\n", PROTOCOL, TINY).replace("[100, 100, 32]", "[100, 100, 60]")
 
 
 def recipe(folder: Path, text: str = TIMED) -> factory.Recipe:

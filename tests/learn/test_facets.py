@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from factory._sampling import surface_triangles
+from factory.sampling import surface_triangles
 from learn.data import Store, open_store
 from learn.data._facets import eight_node_facets, facet_weights
 from learn.data.clouds import SurfaceField

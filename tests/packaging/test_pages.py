@@ -29,7 +29,7 @@ import pytest
 import yaml
 
 from factory import load_recipe, make_plan
-from factory._build import build_dataset
+from factory.building.build import build_dataset
 from tests.packaging.blocks import ROOT, Block, blocks
 
 PAGES = (

@@ -69,6 +69,18 @@ def test_files_import_each_other_one_way(package: str) -> None:
     TopologicalSorter({f: needed(f) for f in files}).prepare()  # CycleError names the files
 
 
+def test_folders_of_the_factory_import_each_other_one_way() -> None:
+    """Nor in functions: a folder is a layer. Modules beside the folders are layers of their own."""
+    found: dict[str, set[str]] = {}
+    for file in (ROOT / "factory").rglob("*.py"):
+        layer = file.relative_to(ROOT / "factory").parts[0].removesuffix(".py")
+        modules = [n.module for n, _ in imports(file) if isinstance(n, ast.ImportFrom) and n.module]
+        others = {m.split(".")[1] for m in modules if m.startswith("factory.")}
+        found.setdefault(layer, set()).update(others - {layer})
+    assert len(found) > 15
+    TopologicalSorter(found).prepare()  # CycleError names the layers
+
+
 def needed(file: Path) -> set[Path]:
     """Files whose import a file begins with."""
     found: set[Path] = set()

@@ -1,0 +1,1 @@
+"""Build and resume a dataset, with the screen of the command."""

@@ -1,0 +1,1 @@
+"""What a store contains: summaries, features of its pokes, and pictures."""
