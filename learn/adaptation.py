@@ -37,7 +37,8 @@ from learn.progress import OnProgress, Progress, ignore
 from learn.training import Recipe, Run, known_domain, load_run
 from learn.training.fine_tuning import FineTuning, Tuned
 from learn.training.recipe import check_recipe
-from learn.training.run_folder import BEST, check_free, save_checkpoint, save_tables, write_whole
+from learn.training.run_dataset import save_tables
+from learn.training.run_folder import BEST, check_free, save_checkpoint, write_whole
 from learn.validity import Domain, domain_of
 
 PARTS = 5  # of the cross-validation

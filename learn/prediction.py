@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from learn.models import Pokes, Scene
 from learn.scene_file import PokeScene
 from learn.training.run_folder import write_whole
-from learn.validity import Check, distance_of, grade, verdict
+from learn.verdict import Check, distance_of, grade, verdict
 
 Floats = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ class PokePrediction:
 
     @property
     def verdict(self) -> str:
-        """The domain of validity in words (`learn.validity.verdict`)."""
+        """The domain of validity in words (`learn.verdict`)."""
         return verdict(self.checks, intervals=self.radius is not None)
 
     def as_dict(self) -> dict[str, Any]:

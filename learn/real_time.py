@@ -29,23 +29,16 @@ from learn.errors import ImpossiblePokeError, InputError
 from learn.evaluation import Intervals
 from learn.models import InvariantGnn
 from learn.models.single_poke import SinglePoke
+from learn.pose_limits import ANGLE_TEXT, LEAST_COSINE, SiteLimits, in_inclusion
 from learn.quantities import Obstacle, covariates, cover_at, obstacle, poke_values
-from learn.scene_file import (
-    STEEPEST,
-    in_inclusion,
-    kind_of,
-    limits_text,
-    load_poke,
-    scene_and_poke,
-    site_limits,
-)
+from learn.scene_file import kind_of, load_poke, scene_and_poke
 from learn.training import Run
-from learn.validity import Check, Domain, unknown_checks, verdict
+from learn.validity import Domain, unknown_checks
+from learn.verdict import Check, verdict
 
 Floats = NDArray[np.float64]
-_ONE = 1e-6  # tolerance on the length of a direction, and on its vertical component
+_ONE = 1e-6  # tolerance on the length of a direction
 MAIN = ("depth_mm", "angle_deg", "cover_mm")  # quantities whose trained ranges `repr` shows
-_LEAST_COSINE = math.cos(math.radians(STEEPEST))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +72,7 @@ class Answer:
 
     @property
     def verdict(self) -> str:
-        """The domain of validity in words (`learn.validity.verdict`)."""
+        """The domain of validity in words (`learn.verdict`)."""
         if not self.depth > 0.0:
             return "No contact: nothing moves."
         return verdict(self.checks, intervals=self.force_interval is not None)
@@ -160,8 +153,7 @@ class RealTime:
         self._intervals = intervals
         self.points, self.modulus = self._setup.points, float(pokes.modulus[0])
         self._points = np.ascontiguousarray(self.points.T)
-        low, high = site_limits(self._setup)
-        self._low, self._high = low.tolist(), high.tolist()
+        self._limits = SiteLimits.of(self._setup)
         self._least_cover = float(self._interior.soft.min())
         self._last: tuple[tuple[float, ...], _Contact] | None = None
         self._way: tuple[tuple[float, ...], Obstacle | None] | None = None
@@ -262,22 +254,15 @@ class RealTime:
 
     def _check_touch(self, site: Sequence[float], push: Floats, depth: float) -> None:
         """Refuse what is no indentation of the block: most often millimetres in the place of metres."""
-        (x, y), (x0, y0), (x1, y1) = site, self._low, self._high
+        limits, (x, y) = self._limits, site
+        (x0, y0), (x1, y1) = limits.low, limits.high
         if not (x0 <= x <= x1 and y0 <= y <= y1):
-            raise ImpossiblePokeError(
-                f"site: expected {limits_text(self._setup, 'm')}, got ({x:.4g}, {y:.4g}) m", "site"
-            )
-        height = self._setup.block_size[2]
-        if depth >= height:
-            raise ImpossiblePokeError(
-                f"depth: expected less than the block's height of {height:.4g} m, got {depth:.4g} m", "depth"
-            )
-        if -push[2] < _LEAST_COSINE - _ONE:
-            raise ImpossiblePokeError(
-                f"direction: expected at most {STEEPEST:g} degrees from the vertical, "
-                f"got {math.degrees(math.acos(-push[2])):.4g}",
-                "angle",
-            )
+            raise ImpossiblePokeError(f"site: {limits.site_text('m')}, got ({x:.4g}, {y:.4g}) m", "site")
+        if depth >= limits.height:
+            raise ImpossiblePokeError(f"depth: {limits.height_text('m')}, got {depth:.4g} m", "depth")
+        if -push[2] < LEAST_COSINE:
+            angle = math.degrees(math.acos(-push[2]))
+            raise ImpossiblePokeError(f"direction: {ANGLE_TEXT}, got {angle:.4g}", "angle")
 
     def _check_way(self, key: tuple[float, ...], start: Floats, push: Floats, depth: float) -> None:
         """Refuse a tip that has come to the inclusion; `key` is that of the contact."""

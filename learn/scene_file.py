@@ -22,10 +22,10 @@ from learn.data.setup import Setup
 from learn.data.store import Store
 from learn.errors import InputError
 from learn.models import Pokes, Scene, scene_on
-from learn.quantities import Interior, Obstacle, interior_of, obstacle, shape_kind
+from learn.pose_limits import STEEPEST, SiteLimits, in_inclusion
+from learn.quantities import Interior, interior_of, obstacle, shape_kind
 
 _MM = 1e-3
-STEEPEST = 45.0  # [degrees]: largest angle between push and normal, as in the simulator
 
 
 class _Strict(BaseModel):
@@ -247,28 +247,6 @@ def kind_of(file: PokeScene, store: Store) -> str | None:
     return file.inclusion.kind if file.inclusion else shape_kind(store, file.shape or "")
 
 
-def site_limits(setup: Setup) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Least and largest (x, y) of a contact point [m], a radius of the indenter from the sides."""
-    reach = np.array(setup.block_size[:2]) / 2 - setup.rod_radius
-    return setup.middle - reach, setup.middle + reach
-
-
-def limits_text(setup: Setup, unit: Literal["mm", "m"]) -> str:
-    """The limits of a contact point in words."""
-    factor = 1e3 if unit == "mm" else 1.0
-    x, y = (f"{factor * a:.4g} to {factor * b:.4g}" for a, b in zip(*site_limits(setup), strict=True))
-    return f"x within {x} {unit} and y within {y} {unit} (the block less the indenter's radius)"
-
-
-def in_inclusion(met: Obstacle, unit: Literal["mm", "m"]) -> str:
-    """The largest depth of a push that meets an inclusion in words."""
-    factor = 1e3 if unit == "mm" else 1.0
-    return (
-        f"expected less than {factor * met.depth:.3g} {unit}, where the tip would be within the rigid "
-        f"inclusion, which lies under {factor * met.cover:.3g} {unit} of cover there"
-    )
-
-
 def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
     size = np.array(setup.block_size) * 1e3
     middle = setup.middle * 1e3
@@ -279,15 +257,12 @@ def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
             f"{where}: key block_mm: expected sides of the indenter's diameter, {2 * radius:.4g} mm, or more,"
             f" got {size[0]:.4g} x {size[1]:.4g}"
         )
-    lowest, highest = site_limits(setup)
-    for a, b, value in zip(lowest * 1e3, highest * 1e3, file.site_mm, strict=True):
-        if not a <= value <= b:
-            raise InputError(f"{where}: key site_mm: expected {limits_text(setup, 'mm')}, got {value:g}")
+    limits = SiteLimits.of(setup)
+    for a, b, value in zip(limits.low, limits.high, file.site_mm, strict=True):
+        if not a * 1e3 <= value <= b * 1e3:
+            raise InputError(f"{where}: key site_mm: {limits.site_text('mm')}, got {value:g}")
     if file.depth_mm >= size[2]:
-        raise InputError(
-            f"{where}: key depth_mm: expected less than the block's height of {size[2]:.4g} mm, "
-            f"got {file.depth_mm:g}"
-        )
+        raise InputError(f"{where}: key depth_mm: {limits.height_text('mm')}, got {file.depth_mm:g}")
     body = file.inclusion
     if body is None or isinstance(body, NoInclusion):
         return

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,6 +28,7 @@ from learn.quantities import (
     poke_values,
     shape_kind,
 )
+from learn.verdict import Check
 
 Floats = NDArray[np.float64]
 
@@ -40,56 +40,6 @@ NARROW = 0.01  # relative to the value: a narrower range counts as a single valu
 # (studies/learning/paper.md).
 OTHER_LAW = 0.1
 _LAW = "material law"
-# Distances that are told apart in words: up to CLOSE the intervals have 1 % of the variance of an uninformed
-# prediction at most, beyond FAR two thirds or more (`learn.evaluation.intervals`).
-CLOSE, FAR = 0.05, 0.5
-
-
-@dataclass(frozen=True, kw_only=True)
-class Check:
-    """One quantity of a poke against its trained range.
-
-    Attributes
-    ----------
-    key, name : key and name of the quantity.
-    value : value of the poke; a number, or a name for the kind of inclusion or the law.
-    trained : the trained range or names, as text.
-    inside : True if the value is in the trained range; None if that is not known.
-    beyond : excess over the range and its tolerance, in units of `unit`, as it counts in `Domain.distance`; 0
-        inside, for an inclusion of a kind that was not trained, and where it is not known.
-    unit : what `beyond` is a multiple of, in words: "the range", or "the trained value" of a narrow range.
-    """
-
-    key: str
-    name: str
-    value: float | str
-    trained: str
-    inside: bool | None
-    beyond: float = 0.0
-    unit: str = "the range"
-
-    @property
-    def text(self) -> str:
-        """One line: "depth 12 mm: outside the trained range (0.5 to 10 mm), beyond by 21 % of the range"."""
-        word = {True: "inside", False: "outside", None: "not known whether inside"}[self.inside]
-        trained = f" ({self.trained})" if self.trained else ""
-        far = f", {self.far}" if self.far else ""
-        return f"{self.name} {self.value_text}: {word} the trained range{trained}{far}"
-
-    @property
-    def value_text(self) -> str:
-        """The value with its unit."""
-        units = _ALL[self.key].units if self.key in _ALL else ""
-        value = self.value if isinstance(self.value, str) else f"{self.value:.4g}"
-        return f"{value} {units}".rstrip()
-
-    @property
-    def far(self) -> str:
-        """The excess in words, such as "beyond by 0.4 % of the range"; empty without one."""
-        if not self.beyond > 0.0:
-            return ""
-        word = "counted as" if isinstance(self.value, str) else "beyond by"  # a law has no excess of its own
-        return f"{word} {_times(self.beyond)} {self.unit}"
 
 
 class Domain(BaseModel):
@@ -220,55 +170,6 @@ class Domain(BaseModel):
             return cls.model_validate(values)
         except ValidationError as error:
             raise InputError(f"{where}: domain: {first_fault(error)}") from None
-
-
-def distance_of(checks: Sequence[Check]) -> float:
-    """`Domain.distance` of the poke with these checks; NaN if its quantities have no known range."""
-    if all(check.inside is None for check in checks):
-        return math.nan
-    return math.sqrt(sum(check.beyond**2 for check in checks))
-
-
-def verdict(checks: Sequence[Check], *, intervals: bool) -> str:
-    """Two sentences on the domain of validity: what is outside and by how much, and what follows from it.
-
-    `intervals` is True if the prediction has intervals.
-    """
-    if all(check.inside is None for check in checks):
-        return "The trained ranges are not known: the prediction may be wrong."
-    outside = [check for check in checks if check.inside is False]
-    if not outside:
-        return "Inside the trained ranges."
-    distance = distance_of(checks)
-    places = [
-        f"{check.name} ({check.value_text}; trained: {check.trained}"
-        + (f"; {check.far})" if check.far else ")")
-        for check in outside
-    ]
-    if distance > FAR:
-        wider = "nearly as wide as without a prediction"
-    elif distance > CLOSE:
-        wider = "wider"
-    else:
-        wider = "little wider" if distance > 0.0 else "not wider"
-    known = f"; the intervals are {wider}, and not calibrated there" if intervals else ""
-    wrong = "Errors may be larger than inside" if distance <= CLOSE else "The force may be wrong by a factor"
-    return f"{grade(distance)} the trained ranges: {', '.join(places)}. {wrong}{known}."
-
-
-def grade(distance: float) -> str:
-    """How far a poke that is not inside lies outside, by its `Domain.distance`."""
-    if distance > FAR:
-        return "Far outside"
-    return "Just outside" if 0.0 < distance <= CLOSE else "Outside"
-
-
-def _times(beyond: float) -> str:
-    """A multiple of a unit in words: "less than 0.1 % of", "0.4 % of", "45 % of", "25 times"."""
-    if beyond >= 10.0:
-        return f"{beyond:.0f} times"
-    percent = 100.0 * beyond
-    return "less than 0.1 % of" if percent < 0.1 else f"{percent:.{0 if percent >= 9.95 else 1}f} % of"
 
 
 def _unit_text(key: str, low: float, high: float) -> str:

@@ -12,7 +12,8 @@ import torch.utils.data
 from numpy.typing import NDArray
 from torch import Tensor
 
-from learn.data.store import Store, open_store
+from learn.data.opening import open_store
+from learn.data.store import Store
 from learn.errors import InputError
 
 Floats32 = NDArray[np.float32]

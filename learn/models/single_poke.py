@@ -23,7 +23,8 @@ from torch.nn.functional import silu
 from learn.errors import InputError
 from learn.models import _ahead, _contact, _prior
 from learn.models._contact import RINGS, WIDTHS
-from learn.models._encoder import RADII, Encoded, Gathered, Sparse, Stencil
+from learn.models._encoder import Encoded
+from learn.models._single_round import Round, biased, channels
 from learn.models.invariant_gnn import InvariantGnn, _Messages
 
 Floats = NDArray[np.float32]
@@ -126,23 +127,23 @@ class SinglePoke:
         self._moving = torch.cat([*_of(weight, _OF_DEPTH), nothing[:1]]).T.contiguous()
         # memory common to torch and NumPy
         self._fixed_rows, self._moving_rows = (
-            _channels(w.shape[1], n).fill_(1.0) for w in (self._fixed, self._moving)
+            channels(w.shape[1], n).fill_(1.0) for w in (self._fixed, self._moving)
         )
         hidden = len(self._fixed)
-        self._entered_fixed = _channels(hidden, n)
-        self._entered = _channels(1 + hidden, n).fill_(1.0)  # row 0 is of ones, times which are the biases
+        self._entered_fixed = channels(hidden, n)
+        self._entered = channels(1 + hidden, n).fill_(1.0)  # row 0 is of ones, times which are the biases
         self._rings = (RINGS[:, None] * len(RINGS)).numpy()
         self._widths = np.array([[-0.5 * (self._radius / w) ** 2] for w in WIDTHS], dtype=np.float32)
         self._scales = np.array([[[2.5e-3 / w]] for w in WIDTHS], dtype=np.float32)
         parts = [part for part in model.rounds if isinstance(part, _Messages)]
         assert len(parts) == len(model.rounds)
         # the code in rows 1 to `hidden`, which a round adds to; what it reads beside the code after those
-        x = _channels(1 + max(part.mix.in_features for part in parts), n).fill_(1.0)
+        x = channels(1 + max(part.mix.in_features for part in parts), n).fill_(1.0)
         self._x, self._h = x[: 1 + hidden], x[1 : 1 + hidden]
-        self._rounds: list[_Round] = []
+        self._rounds: list[Round] = []
         shift = torch.zeros(hidden)
         for part in parts:
-            self._rounds.append(_Round(part, encoded.stencils, self._radius, shift, x, len(self._axes)))
+            self._rounds.append(Round(part, encoded.stencils, self._radius, shift, x, len(self._axes)))
             shift = shift + part.back.bias
         slopes = parts[-1].directions * len(parts[-1].scales)
         # vectors that the outputs weight: the constant ones, and memory for those of a poke
@@ -152,8 +153,8 @@ class SinglePoke:
         assert isinstance(leave, nn.Linear)
         assert isinstance(head, nn.Linear)
         assert isinstance(last, nn.Linear)
-        self._enter, self._leave = _biased(model.enter), _biased(leave, shift)
-        self._out = _biased(model.coefficients)
+        self._enter, self._leave = biased(model.enter), biased(leave, shift)
+        self._out = biased(model.coefficients)
         self._head = tuple(t.numpy() for t in (head.weight, head.bias, last.weight[0], last.bias))
         self._last: tuple[tuple[float, ...], _Touch] | None = None
 
@@ -179,7 +180,7 @@ class SinglePoke:
         silu(torch.addmm(at.entered, self._moving, self._moving_rows, out=h), inplace=True)
         silu(torch.mm(self._enter, self._entered, out=self._h), inplace=True)
         for round_ in self._rounds:
-            slopes = round_(at)
+            slopes = round_(at.r, at.unit, at.push, at.near[2])
         out = silu(torch.mm(self._leave, self._x, out=h), inplace=True)
         amounts = torch.mm(self._out, self._entered).numpy()  # (outputs, n)
         gates, amounts = amounts[-_contact.N_GATES :], amounts[: -_contact.N_GATES]
@@ -313,15 +314,6 @@ def _exp(x: Floats, out: Floats | None = None) -> Floats:
     return np.asarray(np.exp(np.maximum(x, _LEAST_EXPONENT, out=out), out=out))
 
 
-def _channels(count: int, n: int) -> Tensor:
-    """Allocate channels of n points.
-
-    Rows that begin a multiple of 4 KiB apart, as for 1,024 points, would map to the same sets of the
-    processor's cache.
-    """
-    return torch.empty(count, n + 16)[:, :n]
-
-
 def _of(weight: Tensor, columns: Sequence[tuple[int, int]]) -> list[Tensor]:
     """Rows of a transposed weight matrix that read these columns, with their signs, each (1, hidden)."""
     return [sign * weight[column : column + 1] for column, sign in columns]
@@ -336,82 +328,3 @@ class _OfFew:
     def clip(x: Any, low: float | None, high: float | None) -> Any:
         x = x if low is None else np.maximum(x, low)
         return x if high is None else np.minimum(x, high)
-
-
-def _biased(layer: nn.Linear, shift: Tensor | None = None) -> Tensor:
-    """Matrix of a linear layer W (x + shift) + b, applied to a row of ones above those of x."""
-    bias = layer.bias if shift is None else layer.bias + layer.weight @ shift
-    return torch.cat([bias[:, None], layer.weight], dim=1)
-
-
-class _Round:
-    """`_Messages` of one poke.
-
-    With r from the contact, mean((x_j - x_i) v_j) = mean(r_j v_j) - r_i mean(v_j): one sparse product gives
-    means and slopes at all scales. Codes are passed without the biases of earlier rounds' last layers
-    (`shift`), which the layers that read them include in their own. `x` is the memory that the rounds share:
-    a row of ones, the code, and what else a round reads. `axes` is the number of axes along which the surface
-    extends: slopes along others are 0, and are not computed.
-    """
-
-    def __init__(
-        self,
-        part: _Messages,
-        stencils: tuple[Stencil, ...],
-        unit: float,
-        shift: Tensor,
-        x: Tensor,
-        axes: int,
-    ) -> None:
-        hidden, d = part.back.out_features, part.directions
-        m, scales = part.thin.out_features - d, len(part.scales)
-        self._m, self._d = m, d
-        self._means = _stacked([stencils[k].mean for k in part.scales])
-        n = self._means.shape[1]
-        self._over_radius = np.array([unit / RADII[k] for k in part.scales], dtype=np.float32)[:, None]
-        self._thin, self._back = _biased(part.thin, shift), part.back.weight.contiguous()
-        self._whole, self._mix = part.whole.weight.numpy(), _biased(part.mix)
-        self._bias = (part.mix.bias + part.mix.weight[:, :hidden] @ shift + part.whole(shift)).numpy()
-        # memory common to torch and NumPy
-        self._x, self._biased_h = x[: 1 + part.mix.in_features], x[: 1 + hidden]
-        self._h, carried = x[1 : 1 + hidden], _channels(m + d + axes * d, n)
-        self._mixed = _channels(hidden, n)
-        self._thinned, self._carried = carried[: m + d], carried.numpy()
-        self._moved = carried[m + d :].unflatten(0, (axes, d)).numpy()
-        beside = self._x[1 + hidden :].unflatten(0, (scales, m + 2 * d)).numpy()
-        self._of_means, self._of_unit, self._of_push = np.split(beside, [m, m + d], axis=1)
-
-    def __call__(self, at: _Touch) -> Floats:
-        """Write the new code in place of the old one; return the slopes (axes, scales x directions, n)."""
-        m, d, axes = self._m, self._d, len(at.r)
-        thin = torch.mm(self._thin, self._biased_h, out=self._thinned).numpy()
-        np.multiply(at.r[:, None], thin[m:], out=self._moved)
-        wanted = torch.from_numpy(np.ascontiguousarray(self._carried.T))
-        found = np.ascontiguousarray(torch.mm(self._means, wanted).numpy().T)
-        found = found.reshape(len(found), *self._of_means.shape[::2])  # (channels, scales, n)
-        self._of_means[:] = found[:m].swapaxes(0, 1)
-        slope = found[m + d :].reshape(axes, d, *found.shape[1:])
-        slope -= at.r[:, None, None] * found[m : m + d]
-        slope *= self._over_radius
-        self._of_unit[:] = (slope * at.unit[:, None, None]).sum(axis=0).swapaxes(0, 1)
-        self._of_push[:] = (at.push @ slope.reshape(axes, -1)).reshape(slope.shape[1:]).swapaxes(0, 1)
-        self._mix.numpy()[:, 0] = self._bias + self._whole @ (self._h.numpy() @ at.near[2])
-        mixed = silu(torch.mm(self._mix, self._x, out=self._mixed), inplace=True)
-        self._h.addmm_(self._back, mixed)
-        return slope.swapaxes(1, 2).reshape(axes, -1, slope.shape[-1])
-
-
-def _stacked(operators: Sequence[Sparse | Gathered]) -> Tensor:
-    """Matrices stacked by rows, with 32-bit indices, to which each product would convert longer ones."""
-    matrices = [operator.matrix for operator in operators if isinstance(operator, Sparse)]
-    assert len(matrices) == len(operators)
-    rows = [torch.zeros(1, dtype=torch.int32)]
-    for m in matrices:
-        rows.append(m.crow_indices()[1:].int() + rows[-1][-1])
-    return torch.sparse_csr_tensor(
-        torch.cat(rows),
-        torch.cat([m.col_indices().int() for m in matrices]),
-        torch.cat([m.values() for m in matrices]),
-        size=(sum(m.shape[0] for m in matrices), matrices[0].shape[1]),
-        check_invariants=False,
-    )

@@ -1,4 +1,4 @@
-"""The page's sliders and its table of trained ranges, in millimetres, degrees and kilopascals."""
+"""The page's sliders, its table of trained ranges and the poses that it refuses, in mm, degrees and kPa."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from typing import Any
 import numpy as np
 
 from learn.data import Setup, Store
+from learn.pose_limits import ANGLE_TEXT, INCLUSION_TEXT, LEAST_COSINE, STEEPEST, SiteLimits
 from learn.quantities import QUANTITIES
-from learn.scene_file import STEEPEST
 from learn.validity import Domain
 
-_BEYOND = 1.5  # ratio of the depth slider's end to the trained depth, so that the limit is visible
+# The sliders end beyond what was trained, and beyond what is refused, so that these limits are visible.
+_BEYOND = 1.5  # ratio of the depth slider's end to the trained depth
+_STEEPER = 5.0  # degrees
 DEGREES = "\N{DEGREE SIGN}"
 
 
 def sliders(store: Store, setup: Setup, domain: Domain | None) -> dict[str, dict[str, Any]]:
     """Sliders by key of the page's poke: limits, units, trained range ({range, text}; None: not known)."""
-    half = np.array(setup.block_size[:2]) / 2 - setup.rod_radius
+    half = np.array(setup.block_size[:2]) / 2
     low, high = ((setup.middle - half) * 1e3).tolist(), ((setup.middle + half) * 1e3).tolist()
     moduli = store.modulus[store.done] * 1e-3
     least, most = float(moduli.min()), float(moduli.max())
@@ -28,14 +30,14 @@ def sliders(store: Store, setup: Setup, domain: Domain | None) -> dict[str, dict
         deepest = max(deepest, depth["range"][1])
     if modulus and modulus["range"]:
         least, most = min(least, modulus["range"][0]), max(most, modulus["range"][1])
-    lowest = min(deepest * _BEYOND, setup.block_size[2] * 1e3 * 0.95)
+    lowest = min(deepest * _BEYOND, setup.block_size[2] * 1e3)
     return {
         "depth": {"low": 0.0, "high": lowest, "step": 0.05, "units": "mm", "trained": depth},
         "x": _along(0, low, high, setup, domain),
         "y": _along(1, low, high, setup, domain),
         "angle": {
             "low": 0.0,
-            "high": STEEPEST,
+            "high": STEEPEST + _STEEPER,
             "step": 0.5,
             "units": DEGREES,
             "trained": _trained(domain, "angle_deg"),
@@ -77,11 +79,52 @@ def checks(domain: Domain | None) -> list[dict[str, Any]]:
     found = domain.check(dict.fromkeys(QUANTITIES, 0.0), "none")
     units = [quantity.units for quantity in QUANTITIES.values()]
     rows: list[dict[str, Any]] = [
-        {"key": check.key, "name": check.name, "units": unit, "trained": check.trained or "not known"}
-        for check, unit in zip(found, [*units, ""], strict=True)
+        {
+            "key": check.key,
+            "name": check.name,
+            "units": units,
+            "trained": check.trained or "not known",
+            "unit": check.unit,
+        }
+        for check, units in zip(found, [*units, ""], strict=True)
     ]
     rows[-1]["kinds"] = True
     return rows
+
+
+def with_units(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of `checks` from a zip of before they had the unit of an excess, which is read off the range."""
+    units = {True: "the range", False: "the trained value"}
+    ranged = (" to ", " or ")
+    return [{"unit": units[any(word in row["trained"] for word in ranged)], **row} for row in rows]
+
+
+def refusals(block: dict[str, Any], rod: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Limits of the poses that no indentation can have, and their refusals, by `learn.errors.Reason`.
+
+    `block` and `rod` are those of the page's description [mm]. The script fills in the pose (x, y, depth,
+    angle), and where the tip comes to the inclusion (limit, cover).
+    """
+    size, middle = ([1e-3 * v for v in block[key]] for key in ("size", "middle"))
+    limits = SiteLimits.around(size, middle, 1e-3 * rod["radius"])
+    met = INCLUSION_TEXT.format(depth="{limit}", cover="{cover}", unit="mm")
+    return {
+        # rounded, since the sliders' values are decimal numbers
+        "site": {
+            "low": [round(1e3 * v, 6) for v in limits.low],
+            "high": [round(1e3 * v, 6) for v in limits.high],
+            "text": f"contact point: {limits.site_text('mm')}, got ({{x}}, {{y}}) mm",
+        },
+        "depth": {
+            "least": round(1e3 * limits.height, 6),
+            "text": f"depth: {limits.height_text('mm')}, got {{depth}} mm",
+        },
+        "angle": {
+            "most": math.degrees(math.acos(LEAST_COSINE)),
+            "text": f"angle: {ANGLE_TEXT}, got {{angle}}",
+        },
+        "inclusion": {"text": f"depth: {met}, got {{depth}} mm"},
+    }
 
 
 def levels(store: Store) -> list[dict[str, Any]]:

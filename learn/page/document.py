@@ -28,10 +28,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import first_fault
 from learn.errors import InputError
+from learn.page import controls
 from learn.page.content import Content, content_of
 from learn.page.graph import write_page_graph
 from learn.predictor import Predictor
 from learn.training.run_folder import write_whole
+from learn.verdict import words
 
 LARGEST = 10e6  # bytes of the gzipped file
 _MEMBERS = ("page.json", "arrays.bin", "poke.onnx")
@@ -61,18 +63,31 @@ class _Halo(BaseModel):
     high: float
 
 
+class _Block(BaseModel):
+    size: tuple[float, float, float]
+    middle: tuple[float, float]
+
+
+class _Rod(BaseModel):
+    radius: float
+
+
+class _Row(BaseModel):
+    trained: str
+
+
 class _About(BaseModel):
     """The description for the script: keys that it has to have, and the form of those that are read here."""
 
     arrays: dict[str, Any]
-    block: dict[str, Any]
-    checks: list[dict[str, Any]]
+    block: _Block
+    checks: list[_Row]
     grid: int
     halo: _Halo | None
     interior_inputs: list[str]
     interiors: Annotated[list[dict[str, Any]], Field(min_length=1)]
     levels: int
-    rod: dict[str, Any]
+    rod: _Rod
     simulated: list[dict[str, Any]]
     sliders: dict[str, Any]
     softness: list[dict[str, Any]]
@@ -199,8 +214,14 @@ def _html(page: Parts) -> str:
     here = files("learn.page")
     bundle, template = here / "bundle", here / "template"
     wasm = lzma.decompress((bundle / "onnxruntime.wasm.xz").read_bytes())
+    about = {
+        **page.about,
+        "checks": controls.with_units(page.about["checks"]),
+        "refusals": controls.refusals(page.about["block"], page.about["rod"]),
+        "words": words(),
+    }
     parts = {
-        "about": json.dumps(page.about, allow_nan=False).encode(),
+        "about": json.dumps(about, allow_nan=False).encode(),
         "arrays": page.arrays,
         "graph": page.graph,
         "wasm": wasm,

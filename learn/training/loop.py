@@ -23,16 +23,15 @@ from learn.training.augmentation import Augmentation
 from learn.training.optimisation import Optimisation, learning_rate
 from learn.training.process_group import ProcessGroup
 from learn.training.recipe import Recipe, loss_of
+from learn.training.run_dataset import check_dataset, save_tables
 from learn.training.run_folder import (
     BEST,
     LAST,
     Log,
-    check_dataset,
     load_checkpoint,
     load_weights,
     recipe_of,
     save_checkpoint,
-    save_tables,
 )
 from learn.validity import domain_of
 

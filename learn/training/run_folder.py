@@ -3,7 +3,7 @@
 `last.pt` holds everything that training needs to resume; `best.pt` the weights of the best epoch on the
 validation part. Both carry the dataset's uuid, the recipe, the statistics and the domain of validity.
 `log.jsonl` has a line of JSON per epoch; TensorBoard events are added if tensorboardX is installed.
-`dataset.npz` has the dataset's small tables: what a prediction needs of it (`learn.data.tables`).
+`dataset.npz` has the dataset's small tables (`learn.training.run_dataset`).
 """
 
 from __future__ import annotations
@@ -25,15 +25,12 @@ import torch
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from learn._yaml import Finite, first_fault
-from learn.data.folds import split_of_run
 from learn.data.statistics import Statistics
-from learn.data.store import Store, open_store
-from learn.data.tables import TABLES, load_tables, tables_bytes
 from learn.errors import InputError
 from learn.models import MODELS, Model, make_model
 from learn.pretrained import folder_of
 from learn.training.recipe import Recipe, check_recipe
-from learn.validity import Domain, domain_of
+from learn.validity import Domain
 
 FORMAT = 1
 LAST, BEST, LOG = "last.pt", "best.pt", "log.jsonl"
@@ -202,12 +199,6 @@ def _content_of(data: bytes, path: Path) -> dict[str, Any]:
     return content
 
 
-def check_dataset(uuid: str, where: Path, store: Store, *, hint: str = "") -> None:
-    """Raise InputError if the checkpoint or run at `where` was trained on another dataset."""
-    if uuid != store.uuid:
-        raise InputError(f"{where}: trained on dataset {uuid}, but {store.location} is {store.uuid}{hint}")
-
-
 def recipe_of(content: dict[str, Any], path: Path) -> Recipe:
     """A checkpoint's recipe; InputError if it is damaged, or its model is of another version."""
     recipe = check_recipe(content["recipe"], str(path))
@@ -283,45 +274,6 @@ def check_free(folder: Path) -> None:
     for name in (LAST, BEST):
         if (folder / name).exists():
             raise InputError(f"{folder}: a run is there already; choose another --out")
-
-
-def open_dataset(run: Run | Pretrained, dataset: Path | str | None = None, *, verify: bool = True) -> Store:
-    """Open the dataset of a run, where it was at training or at `dataset`; InputError if it cannot be."""
-    try:
-        return open_store(run.location if dataset is None else dataset, verify=verify)
-    except InputError as error:
-        if dataset is not None or "://" in run.location or Path(run.location).exists():
-            raise
-        raise InputError(
-            f"{error}: {run.folder} was trained on it; if it has moved, --dataset states where it is now"
-        ) from None
-
-
-def save_tables(folder: Path, store: Store) -> None:
-    """Write the tables of its dataset to a run's folder. OSError if it cannot be."""
-    write_whole(folder / TABLES, tables_bytes(store))
-
-
-def open_tables(run: Run, dataset: Path | str | None = None) -> Store:
-    """The dataset of a run, where it is at hand, or its tables alone, which the run's folder has.
-
-    InputError if `dataset` is stated and cannot be opened, or neither is there.
-    """
-    tables = run.folder / TABLES
-    if dataset is not None or not tables.is_file():
-        return open_dataset(run, dataset, verify=False)
-    try:
-        store = open_dataset(run, verify=False)
-    except InputError:
-        return load_tables(tables)
-    return store if store.uuid == run.uuid else load_tables(tables)
-
-
-def known_domain(run: Run, store: Store) -> Domain | None:
-    """The domain recorded with a run, or derived from its dataset; None if the store is another."""
-    if run.domain is not None or run.uuid != store.uuid:
-        return run.domain
-    return domain_of(store, split_of_run(store, run).train)
 
 
 class Log:

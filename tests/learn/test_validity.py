@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from learn.validity import OTHER_LAW, Domain, distance_of, verdict
+from learn.validity import OTHER_LAW, Domain
+from learn.verdict import distance_of, verdict
 
 
 def test_distance_is_in_units_of_the_trained_ranges() -> None:

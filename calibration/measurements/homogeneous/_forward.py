@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -147,6 +147,27 @@ def predicted(material: Material, curves: Sequence[tuple[Record, Array]]) -> lis
     stresses = stresses_along(material, tests)
     means = iter([course.means(p) for (_, course, _), p in zip(tests, stresses, strict=True)])
     return [np.reshape([next(means) for _ in np.atleast_2d(s)], s.shape) for _, s in curves]
+
+
+def blended(
+    loadings: Sequence[Loading],
+    stretches: Sequence[Array],
+    base: BaseStress,
+    rich: BaseStress | None,
+) -> list[Array]:
+    """(1 - a) times the baseline's stress over the modulus plus a times the richer law's (`rich`).
+
+    a is the `richer_fraction` of each loading, which is 0 if the model has no richer law.
+    """
+    found = base.over_modulus(loadings, stretches)
+    fractions = [x.richer_fraction for x in loadings]
+    some = [k for k, a in enumerate(fractions) if a]
+    if rich is None or not some:
+        return found
+    theirs = [replace(loadings[k], law=loadings[k].further) for k in some]
+    for k, p in zip(some, rich.over_modulus(theirs, [stretches[k] for k in some]), strict=True):
+        found[k] = (1.0 - fractions[k]) * found[k] + fractions[k] * p
+    return found
 
 
 def with_effects(loading: Loading, stretch: Array, stress: Array) -> Array:

@@ -32,6 +32,7 @@ from calibration.measurements.homogeneous._forward import (
     Acting,
     BaseStress,
     Loading,
+    blended,
     with_effects,
     yielding,
 )
@@ -119,6 +120,7 @@ class HomogeneousModel(MeasurementModel):
         )
         self._base = BaseStress(self.baseline, bulk_ratio=BULK_RATIO)
         self.richer: RicherLaw | None = None
+        self._rich: BaseStress | None = None
         if richer is not None:
             self._take_richer(*richer)
         self.effects = {n: self._own(e) for n, e in self.effects.items() if self.richer or not e.richer}
@@ -263,22 +265,8 @@ class HomogeneousModel(MeasurementModel):
 
     def _at_own_stretches(self, loadings: Sequence[Loading], stretches: Sequence[Array]) -> list[Array]:
         """Stress over the shear modulus at the specimens' own stretches, shape of each."""
-        base = self._blended(loadings, stretches, self._base.over_modulus(loadings, stretches))
+        base = blended(loadings, stretches, self._base, self._rich)
         return [with_effects(x, s, p) for x, s, p in zip(loadings, stretches, base, strict=True)]
-
-    def _blended(
-        self, loadings: Sequence[Loading], stretches: Sequence[Array], base: list[Array]
-    ) -> list[Array]:
-        """(1 - a) times the baseline's stress plus a times the richer law's; a : `richer_fraction`."""
-        fractions = [x.richer_fraction for x in loadings]
-        some = [k for k, a in enumerate(fractions) if a]
-        if not some:
-            return base
-        theirs = [replace(loadings[k], law=loadings[k].further) for k in some]
-        rich = self._rich.over_modulus(theirs, [stretches[k] for k in some])
-        for k, p in zip(some, rich, strict=True):
-            base[k] = (1.0 - fractions[k]) * base[k] + fractions[k] * p
-        return base
 
     def _effects_in(self, state: State, k: int) -> Acting:
         """Effects in record `k`, with the sums of their amplitudes there."""

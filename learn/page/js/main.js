@@ -3,7 +3,9 @@
 import { contents } from "./payload.js";
 import { Surrogate } from "./surrogate.js";
 import { View } from "./view.js";
-import { Panel, isOutside, number } from "./panel.js";
+import { Panel, number } from "./panel.js";
+import { refusal } from "./refusal.js";
+import { outside } from "./verdict.js";
 import { listen } from "./pointer.js";
 
 const byId = (id) => document.getElementById(id);
@@ -15,12 +17,13 @@ class Page {
     this.poke = { ...about.start };
     this.times = []; // of each frame [ms]: {inference, whole}
     this.compared = null; // {poke, frame} of the simulated poke beside it
-    const spans = about.interiors.map((_, k) => array(`spans-${k}`).data);
-    this.view = new View(byId("picture"), about, spans);
+    this.spans = about.interiors.map((_, k) => array(`spans-${k}`).data);
+    this.view = new View(byId("picture"), about, this.spans);
     this.panel = new Panel(about, (keys) => this.change(keys));
     this.moved = new Float32Array(about.grid ** 2 * 3);
     this.off = new Float32Array(about.grid ** 2);
     this.shade = new Float32Array(about.grid ** 2);
+    this.rest = new Float32Array(about.grid ** 2 * 3);
     listen(this.view, () => this.poke, (keys) => this.change(keys));
     this.view.controls.addEventListener("change", () => this.wake());
     new ResizeObserver(() => { this.view.resize(); this.wake(); }).observe(this.view.canvas);
@@ -150,13 +153,19 @@ class Page {
     const depth = Math.max(poke.depth, 0);
     const now = Array.from(tip, (v, k) => v * 1e3 + direction[k] * depth);
     const rod = { tip: now, push: direction, radius, edge };
-    const outside = isOutside(poke, answer); // grey, and no halo: the intervals are not calibrated there
-    const halo = answer.radius && byId("halo").checked && depth > 0 && !outside;
-    if (halo) this._scaled(answer.radius);
-    this.view.show("surrogate", displacement, halo ? this.shade : null, outside, rod);
     this.view.placeRod(now, direction);
-    this.panel.tell(poke, answer);
-    if (this.compared) this._compare(poke, answer, rod);
+    const refused = refusal(this.about, this.spans[poke.interior], poke, answer);
+    if (refused) {
+      this.view.show("surrogate", this.rest, null, true, null);
+      this.panel.refuse(refused);
+    } else {
+      const grey = outside(poke, answer).length > 0; // and no halo: the intervals are not calibrated there
+      const halo = answer.radius && byId("halo").checked && depth > 0 && !grey;
+      if (halo) this._scaled(answer.radius);
+      this.view.show("surrogate", displacement, halo ? this.shade : null, grey, rod);
+      this.panel.tell(poke, answer);
+    }
+    if (this.compared) this._compare(poke, refused ? null : answer, rod);
   }
 
   /** Lengths [m] on the halo's scale, from 0 to 1, logarithmic. */
@@ -166,6 +175,7 @@ class Page {
     for (let k = 0; k < lengths.length; k++) this.shade[k] = (Math.log(lengths[k] * 1e3 + 1e-9) - from) / over;
   }
 
+  /** Show the simulated poke's frame, and the error of an answer to the same poke; null: it was refused. */
   _compare(poke, answer, rod) {
     const { index, frame } = this.compared;
     const { steps, forces } = this.about.simulated[index];
@@ -176,20 +186,25 @@ class Page {
       let square = 0;
       for (let p = 3 * k; p < 3 * k + 3; p++) {
         moved[p] = moves[frame * moved.length + p] * steps[frame];
-        square += (moved[p] - answer.displacement[p]) ** 2;
+        if (answer) square += (moved[p] - answer.displacement[p]) ** 2;
       }
       off[k] = Math.sqrt(square);
       largest = Math.max(largest, off[k]);
       mean += off[k] / off.length;
-      if (answer.radius) held += (off[k] <= answer.radius[k]) / off.length;
+      if (answer?.radius) held += (off[k] <= answer.radius[k]) / off.length;
     }
-    this._scaled(off);
-    this.view.show("simulated", moved, this.shade, false, rod);
+    if (answer) this._scaled(off);
+    this.view.show("simulated", moved, answer ? this.shade : null, false, rod);
     const force = forces[frame];
+    const simulated = `FEM: ${number(force)} N at ${number(poke.depth)} mm.`;
+    if (!answer) {
+      this.panel.compare(simulated);
+      return;
+    }
     const wrong = (100 * (Number(answer.force[0]) - force)) / force;
     const share = answer.radius ? ` ${(100 * held).toFixed(0)} % of the points lie within their intervals.` : "";
     this.panel.compare(
-      `FEM: ${number(force)} N at ${number(poke.depth)} mm. Error of the surrogate: ${wrong.toFixed(1)} % of the force, ` +
+      `${simulated} Error of the surrogate: ${wrong.toFixed(1)} % of the force, ` +
       `${number(mean * 1e3)} mm on average and ${number(largest * 1e3)} mm at most.${share}`,
     );
   }

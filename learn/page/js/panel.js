@@ -1,14 +1,11 @@
 // The controls and what is read from them: labels, numbers, the table of trained ranges, what a screen reader hears.
 
+import { excess, outside, verdict } from "./verdict.js";
+
 const byId = (id) => document.getElementById(id);
 const SPOKEN_AFTER = 600; // ms after the last change
+const NONE = "\u2013"; // in place of a number
 const NOT_KNOWN = "not known"; // as the page's description says of a range (learn/page/controls.py)
-
-/** Whether any quantity of an answer, or its kind of inclusion, is beyond what was trained; without contact, where
- * nothing moves, none is. */
-export function isOutside({ depth }, { beyond }) {
-  return depth > 0 && Boolean(beyond) && beyond.some((part) => part > 0);
-}
 
 /** A number with three significant digits and no exponent. */
 export function number(value) {
@@ -75,6 +72,7 @@ export class Panel {
   /** Force, interval and verdict of an answer of the graph. */
   tell(poke, answer) {
     const { about } = this;
+    const { sentences } = about.words;
     const force = Number(answer.force[0]);
     const touching = poke.depth > 0;
     byId("force").textContent = number(force);
@@ -84,36 +82,42 @@ export class Panel {
       interval = touching ? `90 % interval ${number(low)} to ${number(high)} N` : "no contact";
     }
     byId("interval").textContent = interval;
-    const verdict = this._verdict(poke, answer);
-    const inside = answer.beyond ? !isOutside(poke, answer) : null;
-    const words = { true: "inside the trained ranges", false: "outside the trained ranges" };
-    byId("inside").textContent = words[inside] ?? "trained ranges not known";
-    byId("verdict").textContent = verdict;
-    document.body.dataset.inside = String(inside);
-    about.checks.forEach(({ kinds, trained }, k) => {
+    const words = verdict(about, poke, answer);
+    const found = new Set(outside(poke, answer));
+    this._judge(answer.beyond ? String(!found.size) : "null", touching ? words : sentences.inside, words);
+    about.checks.forEach((check, k) => {
       const { value, verdict: cell } = this.rows[k];
-      value.textContent = kinds ? about.interiors[poke.interior].kind : number(answer.values[k]);
-      const outside = touching && answer.beyond[k] > 0;
-      cell.textContent = trained === NOT_KNOWN ? NOT_KNOWN : outside ? "outside" : "inside";
-      cell.className = outside ? "outside" : "";
+      value.textContent = check.kinds ? about.interiors[poke.interior].kind : number(answer.values[k]);
+      const far = found.has(k) ? ["outside", excess(about.words, check, answer.beyond[k])].filter(Boolean).join(", ") : "";
+      cell.textContent = check.trained === NOT_KNOWN ? NOT_KNOWN : far || "inside";
+      cell.className = far ? "outside" : "";
     });
-    clearTimeout(this.spoken);
-    this.spoken = setTimeout(() => {
-      byId("spoken").textContent = `Force ${number(force)} newtons, ${interval}. ${verdict}`;
-    }, SPOKEN_AFTER);
+    this._say(`Force ${number(force)} newtons, ${interval}. ${words}`);
   }
 
-  _verdict(poke, answer) {
-    const { beyond, values } = answer;
-    if (!beyond) return "The trained ranges are not known.";
-    if (!(poke.depth > 0)) return "No contact: nothing moves.";
-    if (!isOutside(poke, answer)) return "Inside the trained ranges.";
-    const names = this.about.checks.flatMap(({ name, units, trained, kinds }, k) => {
-      if (!(beyond[k] > 0)) return [];
-      const value = kinds ? this.about.interiors[poke.interior].kind : `${number(values[k])} ${units}`.trim();
-      return [`${name} ${value} (trained: ${trained})`];
-    });
-    return `Outside the trained ranges: ${names.join("; ")}. The interval is not calibrated here.`;
+  /** In place of an answer, why there is none. */
+  refuse(reason) {
+    const words = `No prediction: ${reason}.`;
+    byId("force").textContent = NONE;
+    byId("interval").textContent = "";
+    this._judge("refused", words, words);
+    for (const { value, verdict: cell } of this.rows) {
+      value.textContent = cell.textContent = NONE;
+      cell.className = "";
+    }
+    this._say(words);
+  }
+
+  /** The verdict below the picture, and its beginning in the picture. */
+  _judge(inside, short, words) {
+    document.body.dataset.inside = inside;
+    [byId("inside").textContent] = short.split(/[:.]/);
+    byId("verdict").textContent = words;
+  }
+
+  _say(words) {
+    clearTimeout(this.spoken);
+    this.spoken = setTimeout(() => { byId("spoken").textContent = words; }, SPOKEN_AFTER);
   }
 
   /** What the simulated poke beside it says; null: hide it. */

@@ -19,6 +19,7 @@ const KEYS = {
 
 /** view: View; now: function that gives the poke; change: function that takes changed keys of it. */
 export function listen(view, now, change) {
+  const steepest = view.about.sliders.angle.high;
   const { canvas, controls } = view;
   let moving = null; // the pointer that holds the rod
   let leaning = false;
@@ -35,7 +36,7 @@ export function listen(view, now, change) {
       const { x, y } = now();
       const [dx, dy] = [at.x - x, at.y - y];
       // the push points from the hand to the site
-      change({ angle: Math.min(Math.hypot(dx, dy) * 1.5, 45), heading: (Math.atan2(-dy, -dx) * 180) / Math.PI });
+      change({ angle: Math.min(Math.hypot(dx, dy) * 1.5, steepest), heading: (Math.atan2(-dy, -dx) * 180) / Math.PI });
     } else change({ x: at.x, y: at.y });
   };
 

@@ -10,6 +10,7 @@ import base64
 import gzip
 import importlib.util
 import io
+import math
 import re
 import shutil
 import statistics
@@ -21,9 +22,13 @@ import numpy as np
 import pytest
 import torch
 
+from learn.data._format import RIGID
+from learn.errors import ImpossiblePokeError, InputError
 from learn.page.content import Content, content_of
 from learn.page.document import LARGEST, Written, write_page
+from learn.page.simulated import described
 from learn.predictor import Predictor
+from learn.real_time import RealTime
 
 CHROMIUM = shutil.which("chromium")
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -35,6 +40,7 @@ pytestmark = [
         reason=f"one of {', '.join(NEEDED)} is not installed",
     ),
 ]
+SHAPES = ["shape-0", "shape-2"]  # of the page; the second is of the training part
 # mm, degrees, kPa: inside the trained ranges, steep, outside the trained ranges
 POKES = [
     {"interior": 0, "x": 3.0, "y": -8.0, "angle": 12.0, "heading": 40.0, "depth": 2.0, "modulus": 12.0},
@@ -45,7 +51,7 @@ POKES = [
 
 @pytest.fixture(scope="module")
 def written(predictor: Predictor, tmp_path_factory: pytest.TempPathFactory) -> Written:
-    return write_page(predictor, tmp_path_factory.mktemp("html") / "poke.html", shapes=["shape-0"], pokes=1)
+    return write_page(predictor, tmp_path_factory.mktemp("html") / "poke.html", shapes=SHAPES, pokes=1)
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +108,7 @@ def test_it_is_one_small_file(written: Written) -> None:
 
 def test_the_browser_says_what_python_says(page: Any, written: Written, predictor: Predictor) -> None:
     """Agreement to 1e-6 of the largest displacement and of the force with onnxruntime and torch in Python."""
-    content: Content = content_of(predictor, shapes=["shape-0"], pokes=1)
+    content: Content = content_of(predictor, shapes=SHAPES, pokes=1)
     session, names = _graph(written.path), content.graph.outputs()
     ask = "async (poke) => { const r = await (await tisim).surrogate.ask(poke);"
     ask += " return Object.fromEntries(Object.entries(r).map(([k, v]) => [k, Array.from(v)])); }"
@@ -170,11 +176,107 @@ def test_controls_move_the_rod_and_the_page_tells_the_answer(page: Any) -> None:
     page.evaluate("async (poke) => (await tisim).change(poke)", POKES[2])
     answered()
     assert page.locator("body").get_attribute("data-inside") == "false"
-    assert "depth 4.50 mm (trained: 1 to 2" in page.locator("#verdict").inner_text()
+    assert "depth (4.5 mm; trained: 1 to 2" in page.locator("#verdict").inner_text()
     page.get_by_role("button", name="Show the FEM poke beside it").click()
     page.wait_for_function("document.getElementById('compared-text').textContent.startsWith('FEM: ')")
     assert "of the points lie within their intervals" in page.locator("#compared-text").inner_text()
     page.wait_for_function("/^Force [0-9.]+ newtons/.test(document.getElementById('spoken').textContent)")
+
+
+def _judged(page: Any, poke: dict[str, float]) -> str:
+    """The page's verdict on a poke."""
+    found: str = page.evaluate(
+        "async (poke) => { const t = await tisim; t.change(poke);"
+        " while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 1));"
+        " return document.getElementById('verdict').textContent; }",
+        poke,
+    )
+    return found
+
+
+def _judge(touch: RealTime, poke: dict[str, float]) -> str:
+    """The verdict of `learn.real_time` on a poke of the page, or reason and text of its refusal."""
+    x, y, angle, heading, depth, touch.modulus = _pose(poke).tolist()
+    push = (math.sin(angle) * math.cos(heading), math.sin(angle) * math.sin(heading), -math.cos(angle))
+    try:
+        return touch(site=(x, y), direction=push, depth=depth).verdict
+    except ImpossiblePokeError as refused:
+        return f"{refused.reason}: {refused}"
+
+
+def _in_mm(predictor: Predictor, poke: dict[str, float]) -> str:
+    """What `Predictor.predict` expects in place of a poke that it refuses."""
+    keys = {
+        "depth_mm": "depth",
+        "angle_deg": "angle",
+        "heading_deg": "heading",
+        "shear_modulus_kPa": "modulus",
+    }
+    scene = {key: poke[name] for key, name in keys.items()}
+    with pytest.raises(InputError) as refused:
+        predictor.predict(
+            {"shape": SHAPES[int(poke["interior"])], "site_mm": [poke["x"], poke["y"]], **scene}
+        )
+    return "expected" + re.split("expected|, got", str(refused.value))[1]
+
+
+def _pokes(predictor: Predictor) -> Iterator[dict[str, float]]:
+    """Pokes inside the trained ranges, at every distance from them, and impossible ones."""
+    store, domain = predictor.store, predictor.domain
+    assert domain is not None
+    low, high = domain.ranges["depth_mm"]
+    of_training = np.flatnonzero(store.shape == store.shapes.index(SHAPES[1]))[0]
+    trained = {**described(store, int(of_training), 1)[0]["poke"], "depth": (low + high) / 2}
+    yield trained
+    for beyond in (-0.2, 0.0002, 0.03, 0.2, 0.49, 1.1, 14.0):  # of the range
+        yield {**trained, "depth": high + 0.01 + 1e-3 * high + beyond * (high - low)}
+    for change in (
+        {"x": 47.4},
+        {"angle": 44.8},
+        {"modulus": 35.2},
+        {"modulus": 2e3},
+        {"interior": 0},
+        {"interior": 2},
+    ):
+        yield {**trained, **change}
+    for change in ({"x": 49.0}, {"y": -48.2}, {"angle": 48.0}, {"depth": 33.0}, {"x": 49.0, "depth": 33.0}):
+        yield {**trained, **change}
+    yield {**trained, "x": 49.0, "depth": 0.0}
+    rigid = (store.profile[store.geometry[store.shape == store.shapes.index(SHAPES[0])][0]] == RIGID).any(
+        axis=1
+    )
+    x, y = store.setups[0].points[rigid, :2].mean(axis=0) * 1e3
+    random = np.random.default_rng(2)
+    for a, b, c, d, e in random.uniform((-9, -9, 0, -180, 9), (9, 9, 44, 180, 31), (25, 5)):
+        yield {**trained, "interior": 0, "x": x + a, "y": y + b, "angle": c, "heading": d, "depth": e}
+
+
+def test_the_page_judges_pokes_as_python_does(browser: Any, written: Written, predictor: Predictor) -> None:
+    """Its verdicts are those of `learn.real_time` word by word, and so are its refusals, in mm."""
+    page = opened(browser, written)
+    wider = "const { depth, modulus } = (await tisim).about.sliders; [depth.high, modulus.high] = [40, 4e3];"
+    page.evaluate(f"async () => {{ {wider} }}")  # mm, kPa
+    interiors: list[dict[str, Any]] = [{"shape": name} for name in SHAPES] + [{"inclusion": {"kind": "none"}}]
+    touches = [predictor.real_time({**interior, "shear_modulus_kPa": 12.0}) for interior in interiors]
+    seen = set()
+    for poke in _pokes(predictor):
+        told, true = _judged(page, poke), _judge(touches[int(poke["interior"])], poke)
+        reason = true.partition(":")[0]
+        if reason not in ("site", "depth", "angle", "inclusion"):
+            assert told == true, poke
+            seen.add(told.partition(" the ")[0])
+            continue
+        seen.add(reason)
+        expected = true.partition("direction: ")[2].partition(", got")[0] or _in_mm(predictor, poke)
+        match = re.fullmatch(r"No prediction: [a-z ]+: (.*), got .*\.", told)
+        assert match is not None, (told, poke)
+        assert match[1] == expected
+        assert page.locator("#force").inner_text() == "\N{EN DASH}"
+        assert page.locator("body").get_attribute("data-inside") == "refused"
+    grades = {"Inside", "Just outside", "Outside", "Far outside", "No contact: nothing moves."}
+    assert seen == grades | {"site", "depth", "angle", "inclusion"}
+    assert page.faults == []
+    page.close()
 
 
 def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> None:

@@ -13,6 +13,7 @@ import torch
 from learn.errors import InputError
 from learn.page import command
 from learn.page.content import Content, content_of
+from learn.page.controls import with_units
 from learn.page.simulated import quantised
 from learn.predictor import Predictor
 from tests.learn.commands import call, refused
@@ -69,6 +70,14 @@ def test_beyond_names_the_quantities_of_the_domain(predictor: Predictor, content
         assert [check.key for check in checks] == keys
         # an inclusion's kind that the dataset does not state is unknown, neither inside nor outside
         assert (found["beyond"] > 0).tolist() == [check.inside is False for check in checks]
+
+
+def test_units_of_excesses_that_an_earlier_zip_lacks_are_read_off_the_ranges(content: Content) -> None:
+    rows = [row for row in content.about["checks"] if row["trained"] not in ("any", "not known")]
+    assert {row["unit"] for row in rows} == {"the range", "the trained value"}
+    earlier = [{key: value for key, value in row.items() if key != "unit"} for row in rows]
+    assert with_units(earlier) == rows
+    assert with_units([{"trained": "0 mm", "unit": "30 mm"}]) == [{"trained": "0 mm", "unit": "30 mm"}]
 
 
 def test_a_rod_that_does_not_touch_has_no_force(content: Content) -> None:
