@@ -93,6 +93,86 @@ def test_a_motion_ends_in_the_equilibrium_that_newton_finds() -> None:
     assert forces[1] == pytest.approx(forces[0], rel=1e-3, abs=1e-3 * np.linalg.norm(forces[0]))
 
 
+def test_a_drag_holds_where_it_is_told_to_whatever_the_start_value() -> None:
+    found = []
+    for start, held in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)):
+        system, block = at_equilibrium(poke(friction=0.0, direction=TILTED), 0.0003)
+        system.move_to(0.0004)
+        x = system.previous
+        ahead = x + 1e-4 * np.where(x[:, 2:] > 0.0, system.axis, 0.0)
+        at, from_ = (ahead if start else x), (ahead if held else x)
+        system.touch(at)
+        outcome = block.solve(
+            at, tolerance=1e-6, max_iterations=40, kept=False, drag=100.0, dragged_from=from_
+        )
+        assert outcome.status is Status.CONVERGED
+        found.append(outcome.x)
+    moved = float(np.abs(found[0] - x).max())
+    assert found[1] == pytest.approx(found[0], abs=0.01 * moved)
+    assert float(np.abs(found[2] - found[0]).max()) > 0.1 * moved
+
+
+class Scripted:
+    """A solver whose steps move the surface by `moved` [m], in given iterations; 0 is a failed step."""
+
+    def __init__(self, iterations: list[int], left: float, moved: float = 1e-7) -> None:
+        self.script, self.left, self.moved = iterations, left, moved
+        self.drags: list[float] = []
+        self.starts: list[float] = []
+        self.attempts: list[int] = []
+
+    def renew(self) -> None: ...
+
+    def solve(self, x: Any, *, max_iterations: int, drag: float = 0.0, **options: Any) -> Outcome:
+        if drag == 0.0:
+            self.attempts.append(max_iterations)
+            done = len(self.drags) == len(self.script)
+            status = Status.CONVERGED if done else Status.NOT_CONVERGED
+            return Outcome(x, status, self.left, max_iterations)
+        self.drags.append(drag)
+        self.starts.append(float(np.abs(x - options["dragged_from"]).max()))
+        used = self.script[len(self.drags) - 1]
+        if used == 0:
+            return Outcome(x, Status.NOT_CONVERGED, 1.0, 10)
+        return Outcome(options["dragged_from"] + self.moved, Status.CONVERGED, 1e-6, used)
+
+
+def rest_of(block: Scripted) -> None:
+    system, _ = at_equilibrium(poke(friction=0.0), 0.0003)
+    system.move_to(0.0003)
+    outcome = come_to_rest(
+        system,
+        block,
+        system.previous,
+        tolerance=1e-3,
+        max_iterations=400,
+        kept=True,  # type: ignore[arg-type]
+    )
+    assert outcome.status is Status.CONVERGED
+
+
+def test_after_a_failed_step_the_drag_falls_slowly() -> None:
+    block = Scripted([2, 2, 5, 0, 2, 2, 2, 2], left=1.0)
+    rest_of(block)
+    ratios = np.array(block.drags[1:]) / block.drags[:-1]
+    # as fast as Newton's method converges; then four times as large, held, by half, and as before
+    assert ratios.tolist() == [0.25, 0.25, 0.5, 4.0, 1.0, 0.5, 0.25]
+
+
+def test_a_step_begins_with_the_motion_of_the_last() -> None:
+    block = Scripted([2, 2, 0, 2, 2], left=1.0)
+    rest_of(block)
+    assert block.starts == pytest.approx([0.0, 1e-7, 1e-7, 0.0, 1e-7])  # none after a failed step
+
+
+@pytest.mark.parametrize(("left", "more"), [(1.0, False), (1e-9, True)])
+def test_an_attempt_without_hope_is_short(left: float, more: bool) -> None:
+    block = Scripted([2, 2, 2], left=left, moved=1e-9)
+    rest_of(block)
+    tries = [n for n in block.attempts if n]
+    assert tries[:2] == ([4, 8] if more else [4, 4])
+
+
 @pytest.mark.parametrize("kind", ["hex20", "hex8"])
 def test_a_motion_without_rest_leaves_no_trace(kind: ElementKind) -> None:
     softening = replace(SOFT, softening=tisim.OgdenRoxburgh(r=2.0, m=1e3, beta=0.1))

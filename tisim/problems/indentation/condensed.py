@@ -93,7 +93,14 @@ class CondensedBlock:
         self.last_residual = 0.0
 
     def solve(
-        self, x: Array, *, tolerance: float, max_iterations: int, kept: bool, drag: float = 0.0
+        self,
+        x: Array,
+        *,
+        tolerance: float,
+        max_iterations: int,
+        kept: bool,
+        drag: float = 0.0,
+        dragged_from: Array | None = None,
     ) -> Outcome:
         """Equilibrium from x (n, 3) [m].
 
@@ -102,14 +109,17 @@ class CondensedBlock:
         x, tolerance, max_iterations, kept
             As in `contact_newton`.
         drag : float
-            Resistance of each near node to motion away from x [N/m] (`Drag`).
+            Resistance of each near node to motion away from `dragged_from` [N/m] (`Drag`).
+        dragged_from : ndarray of float, shape (n, 3), optional
+            Positions [m]; by default x.
         """
         system = self._system
         if self._chosen is None or self._beyond(self._chosen):
             self._choose(x)
         split = self._split
         moving = system.discretisation if split is None else split.near.body.discretisation
-        system.drag = Drag(x, _of_free(drag, moving)) if drag else None
+        start = x if dragged_from is None else dragged_from
+        system.drag = Drag(start, _of_free(drag, moving)) if drag else None
         if split is None:
             outcome = contact_newton(system, x, tolerance=tolerance, max_iterations=max_iterations, kept=kept)
             self._count(system.linear, outcome.iterations)

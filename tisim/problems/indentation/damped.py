@@ -31,15 +31,18 @@ AT_MOST, QUARTER, HALF = 10, 4, 7
 # Tolerance of a pseudo-time step, relative to the rod's force: PART times the drag force of the step before,
 # at most LOOSEST, at least LEAST times the tolerance of equilibrium.
 PART, LOOSEST, LEAST = 0.2, 2e-3, 0.4
-# Equilibrium without drag is sought, in TRIED iterations, once the drag force is below NEAR times its
-# tolerance, and again each time the drag has fallen to AGAIN times its value at the last attempt.
-NEAR, TRIED, AGAIN = 6.0, 12, 0.3
+# Factors of the drag after the first steps that follow a failed one, which was too long.
+CAUTIOUS = (1.0, 0.5)
+# Equilibrium without drag is sought once the drag force is below NEAR times its tolerance, and again each
+# time the drag has fallen to AGAIN times its value at the last attempt: in FEW iterations and, if these lower
+# the residual to HOPEFUL times the drag force, in TRIED.
+NEAR, AGAIN, FEW, HOPEFUL, TRIED = 6.0, 0.3, 4, 0.3, 12
 
 # Longest step for which a motion is tried [m].
 LONGEST = 0.2e-3
 # Iterations of the direct attempt and of the motion, in units of the largest number of a step.
 STRAIGHT, IN_MOTION = 0.5, 4.0
-# The motion is abandoned unless its drag has fallen to the fraction LOW of the first after the fraction SOON
+# The motion is abandoned unless its drag has fallen to the fraction LOW of the first within the fraction SOON
 # of its iterations: over crushed tissue it does not fall.
 LOW, SOON = 0.1, 0.375
 
@@ -103,32 +106,45 @@ def come_to_rest(
     """
     before = system.remembered()
     unit = system.body.moduli.shear_modulus * system.scene.rod.radius
-    drag, tried, force, used = FIRST * unit, np.inf, np.inf, 0
+    drag, lowest, tried, force, used = FIRST * unit, np.inf, np.inf, np.inf, 0
+    motion, its_drag = np.zeros_like(x), drag  # of the last step, which the next one begins with
+    cautious: list[float] = []
     block.renew()
     while True:
-        system.touch(x)
+        guess = x + min(1.0, its_drag / drag) * motion
+        if system.potential(guess)[1] < 0.5 * system.min_jacobian:
+            guess = x
+        system.touch(guess)
         enough = max(LEAST * tolerance, min(LOOSEST, PART * force))
-        outcome = block.solve(x, tolerance=enough, max_iterations=AT_MOST, kept=False, drag=drag)
+        outcome = block.solve(
+            guess, tolerance=enough, max_iterations=AT_MOST, kept=False, drag=drag, dragged_from=x
+        )
         used += max(outcome.iterations, 1)
         refused = overlap_fault(outcome, system)
         if refused is None:
-            force = drag * float(np.linalg.norm(outcome.x - x)) / max(system.rod_force(), 1e-12)
-            x = outcome.x
+            motion, its_drag = outcome.x - x, drag
+            force = drag * float(np.linalg.norm(motion)) / max(system.rod_force(), 1e-12)
+            x, iterations, lowest = outcome.x, outcome.iterations, min(lowest, drag)
             system.accept(x)
             system.move_to(system.depth)
-            iterations = outcome.iterations
             near = force < NEAR * tolerance and drag < AGAIN * tried
             tried = drag if near else tried
-            system.touch(x)
-            outcome = block.solve(x, tolerance=tolerance, max_iterations=TRIED if near else 0, kept=kept)
+            outcome = _without_drag(
+                system, block, x, tolerance=tolerance, kept=kept, force=force if near else 0.0
+            )
             used += outcome.iterations
             if overlap_fault(outcome, system) is None:
                 _log.debug("at rest after %d iterations, drag %.2g", used, drag / unit)
-                return Outcome(outcome.x, Status.CONVERGED, outcome.residual, used)
-            drag *= 0.25 if iterations < QUARTER else 0.5 if iterations < HALF else 1.0
+                return replace(outcome, iterations=used)
+            if cautious:
+                drag *= cautious.pop(0)
+            else:
+                drag *= 0.25 if iterations < QUARTER else 0.5 if iterations < HALF else 1.0
         else:
             drag *= 4.0
-        most = max_iterations if drag <= LOW * FIRST * unit else SOON * max_iterations
+            motion = np.zeros_like(x)
+            cautious = list(CAUTIOUS)
+        most = max_iterations if lowest <= LOW * FIRST * unit else SOON * max_iterations
         if drag > LARGEST * unit or used >= most:
             _log.debug("no rest after %d iterations, drag %.2g", used, drag / unit)
             system.recall(before)
@@ -136,3 +152,15 @@ def come_to_rest(
             block.renew()
             status = Status.NOT_CONVERGED if refused is None else refused
             return Outcome(outcome.x, status, outcome.residual, used)
+
+
+def _without_drag(
+    system: PokeSystem, block: CondensedBlock, x: Array, *, tolerance: float, kept: bool, force: float
+) -> Outcome:
+    """Equilibrium from x (n, 3), where the drag's relative force is `force`; not tried if that is 0."""
+    system.touch(x)
+    outcome = block.solve(x, tolerance=tolerance, max_iterations=FEW if force else 0, kept=kept)
+    if outcome.status is not Status.NOT_CONVERGED or outcome.residual > HOPEFUL * force:
+        return outcome
+    more = block.solve(outcome.x, tolerance=tolerance, max_iterations=TRIED - FEW, kept=kept)
+    return replace(more, iterations=outcome.iterations + more.iterations)
