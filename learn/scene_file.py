@@ -268,8 +268,8 @@ def _check_fit(file: PokeScene, setup: Setup, where: str) -> None:
         return
     centre, half = np.array(body.centre_mm), np.array(body.half_mm)
     base = setup.top * 1e3 - size[2]
-    limits = [(low[0], high[0]), (low[1], high[1]), (base, base + size[2])]
-    for k, (axis, (a, b)) in enumerate(zip("xyz", limits, strict=True)):
+    sides = [(low[0], high[0]), (low[1], high[1]), (base, base + size[2])]
+    for k, (axis, (a, b)) in enumerate(zip("xyz", sides, strict=True)):
         # an inclusion may be sunk into the base, but some of it has to be in the block
         below = centre[k] + half[k] <= a if axis == "z" else centre[k] - half[k] < a - 1e-9
         above = centre[k] + half[k] >= b if axis == "z" else centre[k] + half[k] > b + 1e-9
