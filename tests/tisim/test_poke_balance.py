@@ -49,9 +49,6 @@ class Springs:
     def rod_force(self) -> float:
         return 1.0
 
-    def harden(self) -> bool:
-        return False
-
 
 @pytest.mark.parametrize(("alike", "kept", "steps"), [(True, True, 7), (True, False, 4), (False, True, 4)])
 def test_residuals_that_all_point_one_way_are_no_frame(alike: bool, kept: bool, steps: int) -> None:

@@ -13,7 +13,7 @@ from tisim.discretisation.body import Discretisation
 from tisim.mesh.indentation import poke_mesh
 from tisim.nonlinear.newton import Outcome
 from tisim.problems.indentation import course as by_course
-from tisim.problems.indentation import damped
+from tisim.problems.indentation import damped, steps
 from tisim.problems.indentation import solve as by_depth
 from tisim.problems.indentation import system as contact
 from tisim.problems.indentation.condensed import CondensedBlock
@@ -79,20 +79,16 @@ def test_an_earlier_state_has_its_own_points(mesh: tisim.Mesh, monkeypatch: pyte
     system.accept(step_to(system, block, 0.0003))
     system.move_to(0.0006)
     system.touch(system.previous)
-    before, x, limit = system.remembered(), system.previous, system._law[4]
+    before, x = system.remembered(), system.previous
     wanted, _ = system.residual(x)
     monkeypatch.setattr(contact, "FINER_FROM", 0.0)
-    with monkeypatch.context() as then:
-        then.setattr(contact, "HARDENS_TO", 100.0)
-        system.accept(step_to(system, block, 0.0006))
+    system.accept(step_to(system, block, 0.0006))
     assert system.finer
-    assert system._law[4] > limit
     system.recall(before)
     system.move_to(0.0006)
     system.touch(x)
     assert not system.finer
     assert system.residual(x)[0] == pytest.approx(wanted, abs=1e-12)
-    assert system._law[4] == limit
 
 
 def test_a_poke_with_more_points_has_the_same_force(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -105,36 +101,23 @@ def test_a_poke_with_more_points_has_the_same_force(monkeypatch: pytest.MonkeyPa
     assert finer.rod_force == pytest.approx(plain.rod_force, abs=0.03 * size)
 
 
-def test_the_limit_of_hardening_saves_iterations_and_leaves_equilibria(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize(("least", "deep"), [(0.22, False), (0.0, True)])
+def test_a_long_step_whose_start_value_is_deep_in_the_rod_is_shorter(
+    monkeypatch: pytest.MonkeyPatch, least: float, deep: bool
 ) -> None:
-    monkeypatch.setattr(contact, "HARDENS_AT", 0.01)  # an eighth of the penetration
-    plain = solve_poke(SCENE)
-    monkeypatch.setattr(contact, "HARDENS_TO", 1.0)
-    monkeypatch.setattr(contact, "HARDENS_AT_LEAST_TO", 1e-3)
-    limited = solve_poke(SCENE)
-    assert limited.ok
-    assert limited.cost.newton_iterations < 0.75 * plain.cost.newton_iterations
-    assert limited.penetration == pytest.approx(plain.penetration, rel=0.02)
-    assert limited.rod_force == pytest.approx(
-        plain.rod_force, abs=0.01 * float(np.linalg.norm(plain.rod_force[-1]))
-    )
+    lengths: list[float] = []
 
+    def noted(*arguments: Any, length: float, **others: Any) -> tuple[Outcome, Status | None]:
+        lengths.append(length)
+        return solve_step(*arguments, length=length, **others)
 
-def test_what_does_not_converge_states_the_residual_of_the_whole_law(
-    mesh: tisim.Mesh,
-) -> None:
-    system, block = start(mesh)
-    x = step_to(system, block, 0.0003)
-    system.move_to(0.0008)
-    system.touch(x)
-    stated = block.solve(x, tolerance=1e-6, max_iterations=0, kept=True)
-    system._law[4] = 1.0
-    residual, load = system.residual(x)
-    assert stated.residual == pytest.approx(float(np.linalg.norm(residual)) / load, rel=1e-9)
-    system._law[4] = 1e-4
-    residual, load = system.residual(x)
-    assert stated.residual != pytest.approx(float(np.linalg.norm(residual)) / load, rel=0.01)
+    monkeypatch.setattr(by_depth, "solve_step", noted)
+    monkeypatch.setattr(steps, "DEEP_AT_LEAST", least)
+    result = solve_poke(SCENE)
+    assert result.ok
+    assert result.cost.step_cuts == 0  # no iteration is lost
+    assert sum(lengths) == pytest.approx(0.0008)
+    assert (max(lengths) < LONGEST + 1e-9) is deep
 
 
 @pytest.mark.parametrize("length", [0.9 * LONGEST, 1.1 * LONGEST])

@@ -10,8 +10,7 @@ Energy of a point of rest area A:   A [kn/2 o^2 (1 + (o/h)^4/3) + huber(g)],  wi
 o = max(-d, 0), g the elastic part of the slip and huber(g) = kt/2 g^2 up to the Coulomb limit mu p,
 mu p g - (mu p)^2/(2 kt) beyond it. This is a return mapping whose history variable is g at the last converged
 step, so that a sticking point does not creep from step to step. The pressure p = kn o (1 + (o/h)^4) is almost
-linear below the overlap h and grows with the fifth power of o above it, which bounds the penetration. Beyond
-an overlap l it continues linearly, for iterates far from equilibrium: an equilibrium has o <= l everywhere.
+linear below the overlap h and grows with the fifth power of o above it, which bounds the penetration.
 p is fixed during a line search and updated at every linearisation: the residual is Coulomb's law without lag.
 The dependence of mu p and of the tangent plane on x makes the tangent unsymmetric. The unsymmetric part, a
 3 x 3 matrix per point, is stored separately for the linear solver (without it convergence is slow where
@@ -19,7 +18,7 @@ points slip and where they pass the rounded edge).
 A point that first touches in this step slips only for the fraction of the step in which it touches, estimated
 from the step's start value.
 
-The kernels read the contact's constants from `law`: kn [Pa/m], kt [Pa/m], mu, h [m], l [m].
+The kernels read the contact's constants from `law`: kn [Pa/m], kt [Pa/m], mu, h [m].
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
@@ -79,14 +78,9 @@ def rod_distance(y, rod: ti.template()):
 def penalty(d, law: ti.template()):
     """Energy [J/m2], pressure [Pa] and stiffness [Pa/m] at the signed distance d [m]."""
     overlap = ti.max(0.0, -d)
-    within = ti.min(overlap, law[4])
-    beyond = overlap - within
-    harder = (within / law[3]) ** 4
-    energy = 0.5 * law[0] * within * within * (1.0 + harder / 3.0)
-    pressure = law[0] * within * (1.0 + harder)
-    stiffness = law[0] * (1.0 + 5.0 * harder)
-    energy += beyond * (pressure + 0.5 * stiffness * beyond)
-    return energy, pressure + stiffness * beyond, stiffness
+    harder = (overlap / law[3]) ** 4
+    energy = 0.5 * law[0] * overlap * overlap * (1.0 + harder / 3.0)
+    return energy, law[0] * overlap * (1.0 + harder), law[0] * (1.0 + 5.0 * harder)
 
 
 @cache

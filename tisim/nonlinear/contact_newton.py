@@ -49,8 +49,6 @@ class ContactSystem(Protocol):
 
     def rod_force(self) -> float: ...
 
-    def harden(self) -> bool: ...
-
 
 def contact_newton(
     system: ContactSystem,
@@ -64,15 +62,14 @@ def contact_newton(
     relative, radius = np.inf, RADIUS
     system.linear.reset()
     for iteration in range(max_iterations + 1):
-        last = iteration == max_iterations
-        residual, load, done = judged(system, x, tolerance=tolerance, kept=kept, last=last)
+        residual, load = system.residual(x)
         size = float(np.linalg.norm(residual))
         if not np.isfinite(size):
             return Outcome(x, Status.NOT_CONVERGED, np.inf, iteration)
         previous, relative = relative, size / load
-        if done:
+        if settled(system, residual, load, tolerance=tolerance, kept=kept):
             return Outcome(x, Status.CONVERGED, relative, iteration)
-        if last:
+        if iteration == max_iterations:
             break
         system.linearise(x)
         forcing = 3e-2 if iteration == 0 else float(np.clip(0.1 * relative / previous, 5e-3, 3e-2))
@@ -84,22 +81,6 @@ def contact_newton(
             return Outcome(x, status, relative, iteration)
         x = found
     return Outcome(x, Status.NOT_CONVERGED, relative, max_iterations)
-
-
-def judged(
-    system: ContactSystem, x: Array, *, tolerance: float, kept: bool, last: bool
-) -> tuple[Array, float, bool]:
-    """Residual at x (n_free, 3) [N], load [N], and True if they are `settled`.
-
-    The pressure of an iterate deep in the rod is limited (`ContactSystem.harden`). What is settled, and the
-    `last` iterate, are judged without the limit.
-    """
-    residual, load = system.residual(x)
-    done = settled(system, residual, load, tolerance=tolerance, kept=kept)
-    if (done or last) and system.harden():
-        residual, load = system.residual(x)
-        done = settled(system, residual, load, tolerance=tolerance, kept=kept)
-    return residual, load, done
 
 
 def settled(system: ContactSystem, residual: Array, load: float, *, tolerance: float, kept: bool) -> bool:

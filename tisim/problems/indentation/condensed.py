@@ -20,7 +20,7 @@ from tisim.discretisation.body import Discretisation, DiscretisedBody
 from tisim.linear.blocks import FullMatrix, pattern_of
 from tisim.linear.direct import Condensation, LinearSolveError
 from tisim.linear.krylov import FactorGMRES
-from tisim.nonlinear.contact_newton import contact_newton, judged
+from tisim.nonlinear.contact_newton import contact_newton, settled
 from tisim.nonlinear.newton import CRUSHED, Outcome
 from tisim.problems.indentation.far_field import FarField, Part
 from tisim.problems.indentation.system import Drag, PokeSystem
@@ -133,14 +133,13 @@ class CondensedBlock:
         previous, used = np.inf, 0
         rounds = 0
         while True:
-            last = used >= max_iterations or rounds == ROUNDS
-            residual, load, done = judged(system, x, tolerance=tolerance, kept=kept, last=last)
+            residual, load = system.residual(x)
             relative = float(np.linalg.norm(residual)) / load
             if not np.isfinite(relative):
                 return Outcome(x, Status.NOT_CONVERGED, np.inf, used)
-            if done:
+            if settled(system, residual, load, tolerance=tolerance, kept=kept):
                 return Outcome(x, Status.CONVERGED, relative, used)
-            if last:
+            if used >= max_iterations or rounds == ROUNDS:
                 return Outcome(x, Status.NOT_CONVERGED, relative, used)
             if rounds > 1 and relative > SLOW * previous:
                 self._stale = True

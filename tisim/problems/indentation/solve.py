@@ -29,6 +29,7 @@ from tisim.problems.indentation.steps import (
     frame_of,
     next_step,
     predict,
+    starts_deep,
 )
 from tisim.problems.indentation.system import PokeSystem
 from tisim.problems.indentation.turning import axis_at
@@ -108,6 +109,9 @@ def _push(
                 target = 0.5 * (depth + wanted)
             system.move_to(target)
             guess = predict(system, x, velocity * (target - depth))
+            if abs(target - depth) > LONGEST and starts_deep(guess, system):
+                step = CUT * min(step, abs(target - depth))
+                continue
             frame = way * (target - wanted) >= -SAME
             tolerance = (1.0 if frame else BETWEEN) * scene.solver.tolerance
             put_off = frame and way * (goal - target) > SAME  # the last frame has no later one

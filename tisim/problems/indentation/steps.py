@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 # Penetration, as a fraction of the edge radius, beyond which a step is refused.
 REFUSE_AT = 0.5
+# A long step is made shorter before it is tried if its start value penetrates by DEEP times what the last
+# accepted state does, and by DEEP_AT_LEAST of the edge radius.
+DEEP, DEEP_AT_LEAST = 1.4, 0.22
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.1e-3, 0.5e-3, 0.02e-3
 # A step that took at most EASY iterations of Newton's method lets the next one grow, one that took more than
 # HARD lets it shrink, and a refused step is tried again smaller.
@@ -89,6 +92,15 @@ def too_deep(x: Array, system: PokeSystem) -> bool:
     if system.overlap(x) > REFUSE_AT * system.edge:
         return True
     return system.scene.mesh is None and tissue_left(system.scene, system.tip, system.axis)[0] == 0.0
+
+
+def starts_deep(guess: Array, system: PokeSystem) -> bool:
+    """True if the start value (n, 3) is so deep in the rod that Newton's method would need many iterations.
+
+    The pressure grows with the fifth power of the penetration, so that an iteration lowers a deep one by a
+    fifth at most.
+    """
+    return system.overlap(guess) > max(DEEP * system.penetration, DEEP_AT_LEAST * system.edge)
 
 
 def next_step(step: float, iterations: int) -> float:

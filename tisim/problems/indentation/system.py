@@ -32,10 +32,6 @@ STIFFER_SLIDING = 2.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
-# Beyond this multiple of the deepest penetration of the accepted state, and beyond this fraction of the edge
-# radius, the pressure at an iterate continues linearly. With the fifth power a start value deep in the rod
-# has forty times the force of equilibrium, and an iteration lowers its penetration by a fifth only.
-HARDENS_TO, HARDENS_AT_LEAST_TO = 1.25, 0.22
 TANGENT_STIFFNESS = 50.0
 # Upper limit of the edge radius in the contact stiffness, as a fraction of the rod's radius. With its whole
 # radius a hemisphere would penetrate so far that its force is 1.3 % low, whatever the mesh.
@@ -122,8 +118,9 @@ class PokeSystem:
         g = self.body.moduli.shear_modulus
         edge = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
-        tangent, limit = TANGENT_STIFFNESS * g / edge, HARDENS_AT_LEAST_TO * edge
-        self._law = np.array([normal * g / edge, tangent, scene.friction, HARDENS_AT * edge, limit])
+        self._law = np.array(
+            [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
+        )
         self._measure, self._energy, self._assemble = contact_kernels()
         self._place_points(finer=False)
         self.linear = FactorGMRES(discretisation.pattern)
@@ -211,25 +208,11 @@ class PokeSystem:
         if not self.finer and self.overlap(x) > FINER_FROM * self.edge:
             self._add_points()
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
-        self._limit_hardening()
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
             self._known = []
-
-    def _limit_hardening(self) -> None:
-        """Set the penetration up to which the pressure hardens, from that of the accepted state."""
-        least = HARDENS_AT_LEAST_TO / HARDENS_AT * self._law[3]
-        self._law[4] = max(least, HARDENS_TO * -float(self._gap.min()))
-
-    def harden(self) -> bool:
-        """Raise the limit of hardening if the last residual's penetration is beyond it; True if it was."""
-        deepest = -float(self.report[3])
-        beyond = deepest > self._law[4]
-        if beyond:
-            self._law[4] = HARDENS_TO * deepest
-        return beyond
 
     def remembered(self) -> Remembered:
         """Data of the last accepted state, for `recall`."""
@@ -251,7 +234,6 @@ class PokeSystem:
         if self.finer != earlier.finer:
             self._place_points(finer=earlier.finer)
         self._memory, self._gap = earlier.slip, earlier.gap
-        self._limit_hardening()
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
             self._parts.restore(earlier.parts)
@@ -281,6 +263,11 @@ class PokeSystem:
         if self.drag is not None:
             energy += self.drag.energy(x)
         return energy, min_jacobian
+
+    @property
+    def penetration(self) -> float:
+        """Largest penetration of the last accepted state into the rod at the contact points [m], or 0."""
+        return max(-float(self._gap.min()), 0.0)
 
     def overlap(self, x: Array) -> float:
         """Largest penetration of the surface at x into the rod [m], also between contact points, or 0."""
