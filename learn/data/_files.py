@@ -141,15 +141,16 @@ class Source:
     def _stored(self) -> Iterator[Callable[[str], Any]]:
         """Yield a function that opens a file of the folder or zip by name, or returns None if missing."""
         if Path(self.location).is_dir():
-            yield self._in_folder
+            yield functools.partial(self._in_folder, Path(self.location).resolve())
             return
         with zipfile.ZipFile(self.location) as archive:
             names = set(archive.namelist())
             yield lambda name: archive.open(name) if name in names else None
 
-    def _in_folder(self, name: str) -> Any:
-        file = Path(self.location) / name
-        if not file.resolve().is_relative_to(Path(self.location).resolve()):
+    def _in_folder(self, folder: Path, name: str) -> Any:
+        """The file of the resolved folder of the store, open; None if it is missing."""
+        file = folder / name
+        if not file.resolve().is_relative_to(folder):
             raise InputError(f"{self.location}: {name} is a link that leads out of the store")
         return file.open("rb") if file.is_file() else None
 

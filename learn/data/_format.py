@@ -113,17 +113,19 @@ def check_attributes(location: str, attributes: dict[str, Any]) -> None:
 
 def check_arrays(
     location: str, group: zarr.Group, attributes: dict[str, Any], arrays: Mapping[str, Needed]
-) -> None:
-    """Raise InputError unless the arrays exist, with their types, rows and units; no data are read."""
+) -> dict[str, zarr.Array]:
+    """The arrays; InputError unless all exist, with their types, rows and units. No data are read."""
+    found: dict[str, zarr.Array] = {}
     rows: dict[str, tuple[str, int]] = {}
     for name, needed in arrays.items():
         with reading(f"{location}: {name}"):
-            if name not in group:
+            array: Any = group.get(name)  # each look-up reads the array's metadata
+            if array is None:
                 raise InputError(f"{location}: array {name} is missing")
-            array: Any = group[name]
         if not isinstance(array, zarr.Array) or array.ndim == 0:
             raise InputError(f"{location}: {name}: expected an array with rows")
         _check_array(f"{location}: {name}", array, needed)
+        found[name] = array
         if needed.rows == "fixed":
             continue
         first, count = rows.setdefault(needed.rows, (name, array.shape[0]))
@@ -133,6 +135,7 @@ def check_arrays(
         raise InputError(
             f"{location}: {rows['poke'][1]} rows of pokes, attribute pokes is {attributes['pokes']}"
         )
+    return found
 
 
 def _check_array(where: str, array: Any, needed: Needed) -> None:
