@@ -72,7 +72,6 @@ LONG = (
     "learn/test_timed.py",
     "factory/test_assembly.py",
     "factory/test_own_blocks.py",
-    "learn/page/test_parts.py",
     "factory/test_damage_store.py",
     "tisim/test_simulate_batch.py",
     "tisim/test_laws.py",

@@ -1,4 +1,4 @@
-"""The page in Chromium, opened from disk: values, controls, two widths, no errors.
+"""The page in Chromium, opened from disk as on a phone: values, controls, no errors.
 
 The median time of a frame is printed (`-rP`) and recorded as a property. Test machines share their cores, so
 that no bound is set here (docs/how-to/live-page.md has figures).
@@ -24,22 +24,24 @@ import torch
 
 from learn.data._format import RIGID
 from learn.errors import ImpossiblePokeError, InputError
+from learn.page import command
 from learn.page.content import Content, content_of
-from learn.page.document import LARGEST, Written, write_page
+from learn.page.document import LARGEST, Parts, Written, write_page
 from learn.page.simulated import described
 from learn.predictor import Predictor
 from learn.real_time import RealTime
+from tests.learn.commands import call
+from tests.learn.page.contrast import CONTRAST
 
 CHROMIUM = shutil.which("chromium")
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-NEEDED = ("onnx", "onnxscript", "onnxruntime", "playwright")
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on the path"),
-    pytest.mark.skipif(
-        any(importlib.util.find_spec(name) is None for name in NEEDED),
-        reason=f"one of {', '.join(NEEDED)} is not installed",
-    ),
-]
+# the page is open for seconds: to optimise WebAssembly takes longer than that saves, as do layers of WebGL
+FLAGS += ["--js-flags=--liftoff-only", "--disable-gpu-compositing"]
+NEEDED = ("onnx", "onnxscript", "onnxruntime")
+pytestmark = pytest.mark.skipif(
+    any(importlib.util.find_spec(name) is None for name in NEEDED),
+    reason=f"one of {', '.join(NEEDED)} is not installed",
+)
 SHAPES = ["shape-0", "shape-2"]  # of the page; the second is of the training part
 # mm, degrees, kPa: inside the trained ranges, steep, outside the trained ranges
 POKES = [
@@ -55,30 +57,38 @@ def written(predictor: Predictor, tmp_path_factory: pytest.TempPathFactory) -> W
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
+def opened(written: Written) -> Iterator[Any]:
+    """The page at a phone's width, with its errors in `faults`; opened once, since that takes 4 core-s."""
+    if CHROMIUM is None:
+        pytest.skip("there is no chromium on the path")
+    api = pytest.importorskip("playwright.sync_api")
+    with api.sync_playwright() as play:
         browser = play.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
+        page = browser.new_page(viewport={"width": 390, "height": 700}, has_touch=True, is_mobile=True)
+        page.faults = []
+        page.on("pageerror", lambda error: page.faults.append(str(error)))
+        page.on("console", lambda said: page.faults.append(said.text) if said.type == "error" else None)
+        page.on("request", lambda asked: page.faults.append(asked.url) if "http" in asked.url[:5] else None)
+        page.goto(written.path.as_uri())
+        page.wait_for_function("document.documentElement.dataset.ready", timeout=60_000)
+        yield page
         browser.close()
 
 
-def opened(browser: Any, written: Written, **device: Any) -> Any:
-    """Open the page at a phone's width and wait until it is ready; its errors are in `page.faults`."""
-    page = browser.new_page(viewport={"width": 390, "height": 700}, **device)
-    page.faults = []
-    page.on("pageerror", lambda error: page.faults.append(str(error)))
-    page.on("console", lambda said: page.faults.append(said.text) if said.type == "error" else None)
-    page.on("request", lambda asked: page.faults.append(asked.url) if "http" in asked.url[:5] else None)
-    page.goto(written.path.as_uri())
-    page.wait_for_function("document.documentElement.dataset.ready", timeout=60_000)
-    return page
-
-
-@pytest.fixture(scope="module")
-def page(browser: Any, written: Written) -> Any:
-    return opened(browser, written)
+@pytest.fixture
+def page(opened: Any) -> Any:
+    """The page as it is after it was opened: poke, standpoint, and limits of the sliders."""
+    opened.evaluate("""async () => {
+      const t = await tisim;
+      t.limits ??= structuredClone(t.about.sliders);
+      Object.assign(t.about.sliders, structuredClone(t.limits));
+      scrollTo(0, 0);
+      t.beside(null);
+      t.view.look("slant");
+      t.change({ ...t.about.start });
+      while (t.awake || t.asked) await new Promise((r) => setTimeout(r, 5));
+    }""")
+    return opened
 
 
 def _graph(path: Path) -> Any:
@@ -104,6 +114,22 @@ def test_it_is_one_small_file(written: Written) -> None:
     assert written.gzipped < LARGEST
     assert written.size == written.path.stat().st_size
     assert not re.search(r"""(src|href)\s*=\s*["']""", written.path.read_text(encoding="utf-8")[:20_000])
+
+
+def test_the_page_from_the_zip_is_the_page_from_the_run(
+    predictor: Predictor, written: Written, tmp_path: Path
+) -> None:
+    saved, later, again = (tmp_path / name for name in ("poke.zip", "later.html", "again.zip"))
+    shapes = [flag for name in SHAPES for flag in ("--shape", name)]
+    done = call(command.app, predictor.run.folder, *shapes, "--pokes", 1, "--parts", saved)
+    assert done.exit_code == 0, done.output
+    done = call(command.app, saved, "--out", later)
+    assert done.exit_code == 0, done.output
+    assert "3 interiors, 1 simulated poke of" in done.output
+    assert written.path.read_bytes() == later.read_bytes()
+    assert saved.stat().st_size < 0.3 * written.gzipped
+    Parts.load(saved).save(again)
+    assert again.read_bytes() == saved.read_bytes()
 
 
 def test_the_browser_says_what_python_says(page: Any, written: Written, predictor: Predictor) -> None:
@@ -251,9 +277,8 @@ def _pokes(predictor: Predictor) -> Iterator[dict[str, float]]:
         yield {**trained, "interior": 0, "x": x + a, "y": y + b, "angle": c, "heading": d, "depth": e}
 
 
-def test_the_page_judges_pokes_as_python_does(browser: Any, written: Written, predictor: Predictor) -> None:
+def test_the_page_judges_pokes_as_python_does(page: Any, predictor: Predictor) -> None:
     """Its verdicts are those of `learn.real_time` word by word, and so are its refusals, in mm."""
-    page = opened(browser, written)
     wider = "const { depth, modulus } = (await tisim).about.sliders; [depth.high, modulus.high] = [40, 4e3];"
     page.evaluate(f"async () => {{ {wider} }}")  # mm, kPa
     interiors: list[dict[str, Any]] = [{"shape": name} for name in SHAPES] + [{"inclusion": {"kind": "none"}}]
@@ -276,12 +301,10 @@ def test_the_page_judges_pokes_as_python_does(browser: Any, written: Written, pr
     grades = {"Inside", "Just outside", "Outside", "Far outside", "No contact: nothing moves."}
     assert seen == grades | {"site", "depth", "angle", "inclusion"}
     assert page.faults == []
-    page.close()
 
 
-def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> None:
+def test_fingers_move_the_rod_and_the_view(page: Any) -> None:
     """On a phone one finger on the block moves the indenter; two rotate and zoom the view only."""
-    page = opened(browser, written, has_touch=True, is_mobile=True)
     screen = page.context.new_cdp_session(page)
     box = page.locator("#picture").bounding_box()
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55
@@ -326,7 +349,6 @@ def test_fingers_move_the_rod_and_the_view(browser: Any, written: Written) -> No
     assert state()[0][0] < 0.0
     touch("End")
     assert page.faults == []
-    page.close()
 
 
 def test_it_is_readable(page: Any) -> None:
@@ -342,28 +364,6 @@ def test_it_is_readable(page: Any) -> None:
     contrast = page.evaluate(CONTRAST)
     assert contrast, "no text was measured"
     assert min(contrast.values()) >= 4.5, min(contrast.items(), key=lambda item: item[1])
-
-
-# contrast of text against the first opaque background behind it, white if none is opaque: WCAG 2.2, 1.4.3
-CONTRAST = """() => {
-  const parse = (c) => c.match(/[\\d.]+/g).map(Number);
-  const linear = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
-  const light = (colour) => colour.slice(0, 3).map((v) => linear(v / 255))
-    .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
-  const found = {};
-  const names = 'p, label, output, small, button, summary, h1, th, td, option, span';
-  for (const e of document.querySelectorAll(names)) {
-    if (!e.textContent.trim() || !e.checkVisibility()) continue;
-    let ground = [255, 255, 255];
-    for (let up = e; up; up = up.parentElement) {
-      const c = parse(getComputedStyle(up).backgroundColor);
-      if (c.length === 3 || c[3] === 1) { ground = c; break; }
-    }
-    const [a, b] = [light(parse(getComputedStyle(e).color)), light(ground)];
-    found[e.textContent.trim().slice(0, 40)] = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-  }
-  return found;
-}"""
 
 
 def test_the_picture_and_the_time_of_a_frame(
