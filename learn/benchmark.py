@@ -25,6 +25,7 @@ from learn.training import Run
 
 BATCH = 64
 DEEPEST = 5e-3  # m; largest depth of the pokes in real time
+THREADS = (1, 2)
 _YARDSTICK = 512  # rows and columns of the matrix product
 
 
@@ -74,12 +75,20 @@ def loader_rates(
     return rates
 
 
-@torch.inference_mode()
 def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
     """Latency of one poke: name, threads, median and best [ms]; the interior is already encoded.
 
     InputError if the run has an incomplete export.
     """
+    before = torch.get_num_threads()
+    try:
+        return _latencies(run, store, repeats)
+    finally:
+        torch.set_num_threads(before)
+
+
+@torch.inference_mode()
+def _latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, float, float]]:
     exported = run.folder / "onnx"
     has_export = isinstance(run.model, InvariantGnn) and bundle_in(exported)
     times: list[tuple[str, str, float, float]] = []
@@ -96,7 +105,7 @@ def latencies(run: Run, store: Store, repeats: int) -> list[tuple[str, str, floa
     interior = {"shape": shape, "softness": level}
     soft = interior_of(store.setup_of(first), store.profile[store.geometry[first]]).soft
     deepest = min(DEEPEST, 0.9 * float(soft.min()))  # a tip in the inclusion would be refused
-    for threads in (1, 2):
+    for threads in THREADS:
         torch.set_num_threads(threads)
         if isinstance(model, InvariantGnn) and not model.takes_clock:
             single = SinglePoke(model, encoded, int(scene.rigid_index[one.geometry[0]]))

@@ -14,6 +14,11 @@ from PIL.PngImagePlugin import PngInfo
 @pytest.fixture
 def unrendered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are composed and saved as ever, with their metadata, but as one pixel."""
+    unrender(monkeypatch)
+
+
+def unrender(patch: pytest.MonkeyPatch) -> None:
+    """As the fixture of this module, for a fixture of a module's or package's scope."""
 
     def save(
         _: Figure, file: Path | IO[bytes], *, metadata: dict[str, str] | None = None, **_options: Any
@@ -23,4 +28,4 @@ def unrendered(monkeypatch: pytest.MonkeyPatch) -> None:
             about.add_text(key, value)
         Image.new("L", (1, 1)).save(file, format="PNG", pnginfo=about)
 
-    monkeypatch.setattr(Figure, "savefig", save)
+    patch.setattr(Figure, "savefig", save)

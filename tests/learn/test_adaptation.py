@@ -215,7 +215,10 @@ def test_the_page_and_the_export_find_no_test_part(adapted: Path, body: Path) ->
     assert "seen in training" in shown.about["interiors"][0]["label"]
 
 
-def test_the_command_writes_a_run_and_its_pictures(run: Run, body: Path, tmp_path: Path) -> None:
+def test_the_command_writes_a_run_and_its_pictures(
+    run: Run, body: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learn.adaptation, "PARTS", 2)  # each part takes a training
     out = tmp_path / "run"
     done = call(app, "adapt", run.folder, body, "--out", out, "--epochs", 1, "--threads", 1)
     assert done.exit_code == 0, done.output

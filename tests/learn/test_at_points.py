@@ -112,6 +112,7 @@ def test_displacements_are_those_of_the_points_themselves(predictor: Predictor) 
     assert (np.abs(u[4:, 2] - 1) < 0.5).mean() > 0.8
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_file_of_markers_gives_a_file_of_their_displacement(run: Path, tmp_path: Path) -> None:
     scene, out = tmp_path / "poke.yaml", tmp_path / "out"
     scene.write_text("site_mm: [5, -10]\ndepth_mm: 1.5\nshape: shape-1\nsoftness: S1\n")

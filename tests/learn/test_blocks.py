@@ -206,7 +206,7 @@ def test_training_streamed_is_training_in_memory_but_for_the_order(store: Store,
     np.testing.assert_allclose(losses[0], losses[1], rtol=1e-4)
 
 
-@pytest.mark.usefixtures("unrendered")
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_evaluation_with_clouds(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(evaluation, "CLOUD_SIZES", (200,))
     monkeypatch.setattr(evaluation, "CLOUD_SEEDS", 1)

@@ -120,7 +120,7 @@ def test_tables_fit_the_terminal(width: int, models: int, capsys: pytest.Capture
     assert "…" not in shown
 
 
-@pytest.mark.usefixtures("unrendered")
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_a_plugin_brings_a_metric_and_a_model(store: Path, tmp_path: Path) -> None:
     """Train, evaluate and predict with a metric and a model from a file outside the package."""
     flags = ("--plugin", PLUGIN)
@@ -153,7 +153,7 @@ def test_without_its_plugin_a_run_is_refused(
     refused(call(learn.evaluate.app, run, "--plugin", tmp_path / "no.py"), "no.py: expected a Python file")
 
 
-@pytest.mark.usefixtures("unrendered")
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
     """With one validation poke the terminal and the report state why there is no table."""
     store = write_store(tmp_path / "s.zarr", shapes=3, softness=("S0",), sites=1, frames=2)
@@ -169,7 +169,7 @@ def test_too_few_pokes_for_intervals_is_said(tmp_path: Path) -> None:
     assert sorted(p.stem for p in (run / "evaluation").glob("*.png")) == ["force", "learning", "only"]
 
 
-@pytest.mark.usefixtures("unrendered")
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_names_with_brackets_are_no_markup(store: Path, tmp_path: Path) -> None:
     folder = tmp_path / "[bold]run[/x]"
     run = train_small(store, folder, "--model", "invariant-gnn-small", "--epochs", 1)

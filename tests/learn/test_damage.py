@@ -194,6 +194,7 @@ def test_a_report_that_cannot_be_made_is_not_begun(run: Path, store: Path, tmp_p
     assert not (tmp_path / "report").exists()
 
 
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_a_run_that_cannot_be_written_to_has_its_report(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,4 +1,4 @@
-"""Training on real pokes in half a minute beats the baselines on a contact point unseen in training."""
+"""Training on real pokes in ten seconds beats the baselines on a contact point unseen in training."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from learn.models import Scenes
 from learn.training import RECIPES, Trainer, load_run, read_log
 from tests.learn.real_store import write_real_store
 
-RECIPE = RECIPES["quick"].model_copy(update={"epochs": 12, "batch": 6})
-# least ratio of a baseline's error to the model's; measured: 3.4, 13, 35; 4.3, 13, 35; 1.5
+# smaller batches and a higher rate, as so few pokes are trained on for so few epochs
+RECIPE = RECIPES["quick"].model_copy(update={"epochs": 8, "batch": 5, "learning_rate": 3e-3})
+# least ratio of a baseline's error to the model's; measured: 3.3, 12, 34; 4.2, 12, 34; 1.5
 FACTORS = {
     "zero displacement": {"mean": 2.5, "max": 8, "tip": 15},
     "nearest training poke": {"mean": 2.5, "max": 8, "tip": 15},
@@ -22,12 +23,12 @@ FACTORS = {
 }
 
 
-def test_twelve_epochs_on_ten_pokes(tmp_path: Path) -> None:
+def test_eight_epochs_on_ten_pokes(tmp_path: Path) -> None:
     torch.set_num_threads(1)
     store = open_store(write_real_store(tmp_path / "s.zarr"))
     Trainer(store, RECIPE, tmp_path / "run", resume=False).train()
     log = read_log(tmp_path / "run")
-    assert log[-1]["train_loss"] < 0.7 * log[0]["train_loss"]  # measured: 0.52
+    assert log[-1]["train_loss"] < 0.7 * log[0]["train_loss"]  # measured: 0.44
     run, split, scenes = load_run(tmp_path / "run"), split_of(store, RECIPE), Scenes.of(store)
     test = MemoryDataset(store, split.test)
     ours = summarise(predict_part(run.model, scenes, test))

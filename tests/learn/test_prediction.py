@@ -205,6 +205,7 @@ def test_thin_cover_and_other_inclusions_are_outside(predictor: Predictor) -> No
     assert kind.inside is None  # this dataset does not state the kinds of its shapes
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_command_says_so_and_strict_refuses(run: Path, tmp_path: Path) -> None:
     scene = tmp_path / "poke.yaml"
     scene.write_text(POKE.replace("depth_mm: 2", "depth_mm: 9"))
@@ -267,6 +268,7 @@ def test_runs_from_before_the_domain_was_recorded(run: Path, tmp_path: Path) -> 
         predictor.predict(answer.poke, strict=True)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_python_interface(run: Path, predictor: Predictor, tmp_path: Path) -> None:
     scene = tmp_path / "poke.yaml"
     scene.write_text(POKE)

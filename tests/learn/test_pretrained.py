@@ -60,6 +60,7 @@ def test_it_knows_simulated_pokes_of_shapes_that_it_was_not_trained_on(tmp_path:
     assert row["rel force"].mean < 0.05
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_one_answers_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing but the package is needed; the force rises steeply as the indenter nears the sphere."""
     monkeypatch.chdir(tmp_path)
@@ -75,6 +76,7 @@ def test_one_answers_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert high.force > 2.5 * low.force > 2.5 * 2 / 4 * beside.force
 
 
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_results_of_one_are_not_written_into_the_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -117,6 +119,7 @@ def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     )
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_folder_of_results_does_not_hide_the_network_of_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

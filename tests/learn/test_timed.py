@@ -235,7 +235,7 @@ def test_time_counts_in_the_distance_of_an_evaluation(run: Path, tmp_path: Path)
     assert (later > inside + 1.0).all()
 
 
-@pytest.mark.usefixtures("unrendered")
+@pytest.mark.usefixtures("unrendered", "few_motions")
 def test_a_model_without_time_on_a_dataset_with_time_is_said_to_be_one(
     folder: Path, run: Path, tmp_path: Path
 ) -> None:

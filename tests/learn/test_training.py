@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -29,6 +30,7 @@ from tests.learn.small_store import write_store
 
 ROOT = Path(__file__).parent.parent.parent
 TINY = Recipe(name="tiny", model="invariant-gnn-small", epochs=2, batch=4, ema_decay=0.9)
+ONE = TINY.model_copy(update={"epochs": 1})
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -49,6 +51,20 @@ def _train(
             raise KeyboardInterrupt
 
     Trainer(open_store(store), recipe, out, resume=resume, on_progress=watch).train()
+
+
+@pytest.fixture(scope="module")
+def trained(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of one epoch, which no test changes."""
+    out = tmp_path_factory.mktemp("trained") / "run"
+    _train(folder, ONE, out)
+    return out
+
+
+@pytest.fixture
+def run(trained: Path, tmp_path: Path) -> Path:
+    """A copy of the run of one epoch."""
+    return Path(shutil.copytree(trained, tmp_path / "run"))
 
 
 def _weights(out: Path) -> dict[str, Tensor]:
@@ -83,11 +99,9 @@ def test_stopped_and_resumed_is_the_same_as_at_one_go(
     assert [line["epoch"] for line in logs[0]] == [0, 1]
 
 
-def test_another_seed_gives_other_weights(folder: Path, tmp_path: Path) -> None:
-    one = TINY.model_copy(update={"epochs": 1})
-    _train(folder, one, tmp_path / "a")
-    _train(folder, one.model_copy(update={"seed": 1}), tmp_path / "b")
-    assert not _same(_weights(tmp_path / "a"), _weights(tmp_path / "b"))
+def test_another_seed_gives_other_weights(folder: Path, trained: Path, tmp_path: Path) -> None:
+    _train(folder, ONE.model_copy(update={"seed": 1}), tmp_path / "b")
+    assert not _same(_weights(trained), _weights(tmp_path / "b"))
 
 
 @pytest.mark.slow
@@ -108,25 +122,23 @@ def test_dropout_of_the_baseline_resumes_as_well(folder: Path, tmp_path: Path) -
     assert _same(_weights(tmp_path / "whole"), _weights(tmp_path / "parts"))
 
 
-def test_a_checkpoint_carries_dataset_recipe_and_statistics(folder: Path, tmp_path: Path) -> None:
-    _train(folder, TINY.model_copy(update={"epochs": 1}), tmp_path / "run")
-    run = load_run(tmp_path / "run")
+def test_a_checkpoint_carries_dataset_recipe_and_statistics(folder: Path, trained: Path) -> None:
+    run = load_run(trained)
     assert run.uuid == open_store(folder).uuid
     assert run.recipe.name == "tiny"
     assert run.statistics.frames == 8
     assert set(run.groups) == {"train", "validation", "test"}
 
 
-def test_weights_of_another_version_are_refused(folder: Path, tmp_path: Path) -> None:
-    _train(folder, TINY.model_copy(update={"epochs": 1}), tmp_path / "run")
+def test_weights_of_another_version_are_refused(folder: Path, run: Path) -> None:
     for name in ("best.pt", "last.pt"):
-        content = load_checkpoint(tmp_path / "run" / name)
-        save_checkpoint(tmp_path / "run" / name, {**content, "version": 1})
+        content = load_checkpoint(run / name)
+        save_checkpoint(run / name, {**content, "version": 1})
     now = MODELS[TINY.model].version
     with pytest.raises(InputError, match=f"of version 1 of model {TINY.model}, this is version {now}"):
-        load_run(tmp_path / "run")
+        load_run(run)
     with pytest.raises(InputError, match="train again"):
-        _train(folder, TINY, tmp_path / "run", resume=True)
+        _train(folder, TINY, run, resume=True)
 
 
 def test_nan_ends_the_run_and_keeps_the_last_good_checkpoint(
@@ -174,7 +186,6 @@ def test_a_runaway_loss_ends_the_run(folder: Path, tmp_path: Path) -> None:
 
 def test_of_two_trainings_in_one_folder_one_is_refused(folder: Path, tmp_path: Path) -> None:
     """Both began when the folder was new: the second may not write while the first does, nor after it."""
-    one = TINY.model_copy(update={"epochs": 1})
     refused: list[str] = []
 
     def second(progress: Progress) -> None:
@@ -183,36 +194,34 @@ def test_of_two_trainings_in_one_folder_one_is_refused(folder: Path, tmp_path: P
                 late[0].train()
             refused.append(str(error.value))
 
-    first = Trainer(open_store(folder), one, tmp_path / "run", on_progress=second)
-    late = [Trainer(open_store(folder), one.model_copy(update={"seed": k}), tmp_path / "run") for k in (1, 2)]
+    first = Trainer(open_store(folder), ONE, tmp_path / "run", on_progress=second)
+    late = [Trainer(open_store(folder), ONE.model_copy(update={"seed": k}), tmp_path / "run") for k in (1, 2)]
     first.train()
     assert refused == [f"{tmp_path / 'run'}: another training is at work in it: choose another --out"]
     with pytest.raises(InputError, match=r"last\.pt: another training has written it in the meantime"):
         late[1].train()
-    assert load_run(tmp_path / "run").recipe.seed == one.seed
+    assert load_run(tmp_path / "run").recipe.seed == ONE.seed
     assert [line["epoch"] for line in read_log(tmp_path / "run")] == [0]
     (tmp_path / "run" / "last.pt").unlink()
     (tmp_path / "run" / "best.pt").unlink()
-    _train(folder, one, tmp_path / "run")  # the refused ones hold no lock
+    _train(folder, ONE, tmp_path / "run")  # the refused ones hold no lock
 
 
-def test_what_is_there_is_not_overwritten(folder: Path, tmp_path: Path) -> None:
-    one = TINY.model_copy(update={"epochs": 1})
-    _train(folder, one, tmp_path / "run")
-    before = (tmp_path / "run" / "last.pt").read_bytes()
+def test_what_is_there_is_not_overwritten(folder: Path, run: Path, tmp_path: Path) -> None:
+    before = (run / "last.pt").read_bytes()
     with pytest.raises(InputError, match="--resume goes on"):
-        _train(folder, one, tmp_path / "run")
+        _train(folder, ONE, run)
     with pytest.raises(InputError, match="was trained with batch 4, the recipe now has 2"):
-        _train(folder, one.model_copy(update={"batch": 2}), tmp_path / "run", resume=True)
+        _train(folder, ONE.model_copy(update={"batch": 2}), run, resume=True)
     other = write_store(tmp_path / "other.zarr", seed=9, frames=2)
     with pytest.raises(InputError, match="trained on dataset uuid-0-3"):
-        _train(other, one, tmp_path / "run", resume=True)
-    assert (tmp_path / "run" / "last.pt").read_bytes() == before
-    (tmp_path / "run" / "last.pt").write_bytes(before[:1000])
+        _train(other, ONE, run, resume=True)
+    assert (run / "last.pt").read_bytes() == before
+    (run / "last.pt").write_bytes(before[:1000])
     with pytest.raises(InputError, match="not a readable checkpoint"):
-        _train(folder, one, tmp_path / "run", resume=True)
+        _train(folder, ONE, run, resume=True)
     with pytest.raises(InputError, match="no such checkpoint"):
-        _train(folder, one, tmp_path / "nothing", resume=True)
+        _train(folder, ONE, tmp_path / "nothing", resume=True)
     assert not (tmp_path / "nothing").exists()
 
 
@@ -376,21 +385,19 @@ def test_a_step_encodes_the_interiors_of_its_batch_alone(tmp_path: Path, model: 
     assert len(np.unique(store.shape[store.frame_poke[trainer.split.train]])) > 2
 
 
-def test_best_weights_without_their_training_are_not_overwritten(folder: Path, tmp_path: Path) -> None:
+def test_best_weights_without_their_training_are_not_overwritten(folder: Path, run: Path) -> None:
     """A run is kept so for release. A stop within the first epoch leaves best.pt alone: it begins again."""
     store = open_store(folder)
-    recipe = Recipe(name="tiny", epochs=1, batch=8, model="invariant-gnn-small")
-    Trainer(store, recipe, tmp_path).train()
-    first = load_checkpoint(tmp_path / "best.pt")
-    (tmp_path / "best.pt").unlink()
+    first = load_checkpoint(run / "best.pt")
+    (run / "best.pt").unlink()
     with pytest.raises(InputError, match=r"best\.pt: missing beside last\.pt"):
-        Trainer(store, recipe, tmp_path, resume=True)  # might end without any
-    (tmp_path / "last.pt").unlink()
-    for content, asked in (({**first, "epoch": 2}, recipe), (first, recipe.model_copy(update={"seed": 1}))):
-        save_checkpoint(tmp_path / "best.pt", content)
-        before = (tmp_path / "best.pt").read_bytes()
+        Trainer(store, ONE, run, resume=True)  # might end without any
+    (run / "last.pt").unlink()
+    for content, asked in (({**first, "epoch": 2}, ONE), (first, ONE.model_copy(update={"seed": 1}))):
+        save_checkpoint(run / "best.pt", content)
+        before = (run / "best.pt").read_bytes()
         with pytest.raises(InputError, match=r"the best\.pt of another training is there.*another --out"):
-            Trainer(store, asked, tmp_path)
-        assert (tmp_path / "best.pt").read_bytes() == before
-    save_checkpoint(tmp_path / "best.pt", first)
-    Trainer(store, recipe, tmp_path)
+            Trainer(store, asked, run)
+        assert (run / "best.pt").read_bytes() == before
+    save_checkpoint(run / "best.pt", first)
+    Trainer(store, ONE, run)

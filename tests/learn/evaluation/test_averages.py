@@ -27,6 +27,7 @@ def _changed(run: Run, **recipe: object) -> Run:
     return replace(run, folder=folder, recipe=run.recipe.model_copy(update=recipe))
 
 
+@pytest.mark.usefixtures("few_motions")
 def test_runs_that_differ_in_more_than_the_fold_have_rows_of_their_own(store: Path, run: Path) -> None:
     """Two runs tested on the same pokes: these count once, and recipes of one model are not averaged."""
     loaded, data = load_run(run), open_store(store)

@@ -33,6 +33,7 @@ def _renamed(folder: Path) -> Store:
     return open_store(folder)
 
 
+@pytest.mark.usefixtures("few_motions")
 def test_shapes_of_another_dataset_are_told_by_what_they_are(run: Path, store: Path, tmp_path: Path) -> None:
     """Drawn shapes of one name differ, and one shape has different names; by name where the rest is gone."""
     loaded, own = load_run(run), open_store(store)

@@ -24,6 +24,7 @@ from tests.learn.commands import call, train_small
 from tests.learn.drawn import assert_drawn
 from tests.learn.evaluation.cases import BLUE, MODEL, ORANGE, POKE
 from tests.learn.small_store import write_store
+from tests.unrendered import unrender
 
 
 def _assert_pictures(folder: Path, *, learning: tuple[str, ...]) -> None:
@@ -57,6 +58,7 @@ def evaluated(run: Path) -> Path:
     """The run, with its evaluation and its intervals."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(learn.baselines, "_STEPS", 50)
+        unrender(patch)  # the pictures of other tests here are looked at
         done = call(learn.evaluate.app, run, "--threads", 1, "--no-clouds")
     assert done.exit_code == 0, done.output
     return run
@@ -163,6 +165,7 @@ def test_a_damaged_run_is_refused(run: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "evaluation").exists()
 
 
+@pytest.mark.usefixtures("few_motions")
 def test_another_dataset_where_it_is_asked_for(evaluated: Path, tmp_path: Path) -> None:
     """Transfer tests all pokes of shapes unseen by the run, no others, and keeps the run's intervals."""
     run = evaluated
