@@ -165,12 +165,12 @@ def fit_intervals(predictions: Predictions, *, level: float = LEVEL, seed: int =
         raise InputError(too_few(len(pokes)))
     order = np.random.default_rng(seed).permutation(pokes)
     scores, force = np.empty(predictions.away.shape), np.empty(len(predictions.depth))
-    many = len(np.unique(predictions.shape)) >= LEAST_SHAPES
+    sample = _Sample.of(predictions, many=len(np.unique(predictions.shape)) >= LEAST_SHAPES)
     for part in np.array_split(order, min(PARTS, len(order))):
         mine = np.isin(predictions.poke, part)
-        scale = _Scale.fit(predictions.where(~mine), many)
+        scale = _Scale.fit(_Sample(*(values[~mine] for values in sample)))
         scores[mine], force[mine] = scale.scores(predictions.where(mine))
-    return _calibrated(_Scale.fit(predictions, many), scores, force, predictions, level)
+    return _calibrated(_Scale.fit(sample), scores, force, predictions, level)
 
 
 def recalibrated(intervals: Intervals, predictions: Predictions) -> Intervals:
@@ -304,6 +304,36 @@ def _logarithms(size: Floats, away: Floats, depth: float | Floats) -> tuple[Floa
     return np.log1p(away / 2.5e-3), np.log(deep / 5e-3), np.log(size / deep + 1e-4)
 
 
+class _Sample(NamedTuple):
+    """What `_Scale` is fitted to, of f frames at n points.
+
+    `features` (f, n, k) and `logs` of the errors of points [mm] (f, n); `of_force` (f, l) and the errors
+    `force` (f,) of forces.
+    """
+
+    features: Floats
+    logs: Floats
+    of_force: Floats
+    force: Floats
+
+    @classmethod
+    def of(cls, predictions: Predictions, *, many: bool) -> _Sample:
+        """All frames; `many` is True if there are enough shapes to fit the dependence on the inclusion."""
+        x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
+        within = predictions.covariates * many
+        features = np.empty((*x.shape, N_FEATURES + len(COVARIATES)))
+        parts = (1.0, x, x**2, x**3, t, t**2, t * x, s, s**2)
+        for k, part in enumerate(parts):
+            features[..., k] = part
+        features[..., len(parts) :] = within[:, None]
+        return cls(
+            features=features,
+            logs=np.log(np.maximum(predictions.distance_mm, _LEAST_MM)),
+            of_force=np.column_stack([np.ones(len(within)), within]),
+            force=_force_error(predictions),
+        )
+
+
 class _Scale(NamedTuple):
     """Scale of the errors; the fields are those of `Intervals`."""
 
@@ -313,21 +343,11 @@ class _Scale(NamedTuple):
     force_growth: tuple[float, ...]
 
     @classmethod
-    def fit(cls, predictions: Predictions, many: bool) -> _Scale:
-        """Fit the logarithms of the errors by least squares; `force_scale` is a root mean square residual.
-
-        `many` is True if there are enough shapes to fit the dependence on the inclusion.
-        """
-        x, t, s = _logarithms(_size(predictions), predictions.away, predictions.depth[:, None])
-        t = np.broadcast_to(t, x.shape)
-        within = predictions.covariates * many
-        grown = np.moveaxis(np.broadcast_to(within[:, None], (*x.shape, len(COVARIATES))), 2, 0)
-        parts = [np.ones_like(x), x, x**2, x**3, t, t**2, t * x, s, s**2, *grown]
-        found = _least_squares(parts, np.maximum(predictions.distance_mm, _LEAST_MM))
-        error = _force_error(predictions)
-        parts = [np.ones_like(error), *within.T]
-        slope = _least_squares(parts, np.maximum(error, _LEAST_FORCE))[1:]
-        rest = error * np.exp(-within @ slope)
+    def fit(cls, sample: _Sample) -> _Scale:
+        """Fit the logarithms of the errors by least squares; `force_scale` is a root mean square residual."""
+        found = _least_squares(sample.features, sample.logs)
+        slope = _least_squares(sample.of_force, np.log(np.maximum(sample.force, _LEAST_FORCE)))[1:]
+        rest = sample.force * np.exp(-sample.of_force[:, 1:] @ slope)
         return cls(
             scale=found[:N_FEATURES].tolist(),
             force_scale=float(np.sqrt((rest**2).mean())),
@@ -346,11 +366,11 @@ class _Scale(NamedTuple):
         )
 
 
-def _least_squares(parts: list[Floats], errors: Floats) -> Floats:
-    """Least-squares coefficients of ln(error) in the features `parts`, each of the errors' shape."""
-    a = np.stack(parts, axis=-1).reshape(-1, len(parts))
+def _least_squares(features: Floats, values: Floats) -> Floats:
+    """Least-squares coefficients of the values (...) in their features (..., k)."""
+    a = features.reshape(-1, features.shape[-1])
     ridge = 1e-6 * len(a) * np.eye(a.shape[1])
-    return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ np.log(errors).reshape(-1)))
+    return np.asarray(np.linalg.solve(a.T @ a + ridge, a.T @ values.reshape(-1)))
 
 
 def too_few(pokes: int) -> str:
