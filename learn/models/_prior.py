@@ -53,15 +53,19 @@ class Prior(nn.Module):
             radial, factors, turn, vectors = _parts(contact, soft)
             n, b, _ = radial.shape
             every = torch.cat([factors.expand(n, b, -1), turn[..., None]], dim=2)
-            scalar = (radial[..., :, None] * every[..., None, :]).reshape(n, b, -1)
-            basis = torch.stack([v.expand(n, b, 3) for v in vectors], dim=2)
-            design = torch.einsum("nbs,nbvx->nbxsv", scalar, basis).reshape(n * b * 3, size)
-            truth = (batch.displacement / batch.depth[:, None, None]).permute(1, 0, 2).reshape(-1)
+            scalar = (radial[..., :, None] * every[..., None, :]).reshape(n * b, -1)
+            truth = (batch.displacement / batch.depth[:, None, None]).permute(1, 0, 2)
             square = contact.exact.r.square().sum(dim=2)
-            weight = (1 + _NEAR * torch.exp(-0.5 * square / _NEAR_WIDTH**2)).repeat_interleave(3)
-            weighted = design * weight[:, None]
-            normal += weighted.T @ design
-            right += weighted.T @ truth
+            weight = 1 + _NEAR * torch.exp(-0.5 * square / _NEAR_WIDTH**2)
+            # the design is scalars times vectors: for each pair of vectors, products of the scalars
+            basis = [v.expand(n, b, 3) for v in vectors]
+            for j, one in enumerate(basis):
+                right[j::3] += scalar.T @ (weight * (one * truth).sum(dim=2)).reshape(-1)
+                for k, other in enumerate(basis[: j + 1]):
+                    both = (weight * (one * other).sum(dim=2)).reshape(-1, 1)
+                    normal[j::3, k::3] += (part := scalar.T @ (both * scalar))
+                    if k < j:
+                        normal[k::3, j::3] += part
         ridge = _RIDGE * normal.diagonal().mean() * torch.eye(size, dtype=torch.float64)
         found = torch.linalg.solve(normal + ridge, right)
         self.coefficients.copy_(found.reshape(self.coefficients.shape))

@@ -9,6 +9,7 @@ package. Large members are gzipped and base64-encoded; the browser unpacks them.
 from __future__ import annotations
 
 import base64
+import functools
 import gzip
 import io
 import json
@@ -213,7 +214,6 @@ def write_page(
 def _html(page: Parts) -> str:
     here = files("learn.page")
     bundle, template = here / "bundle", here / "template"
-    wasm = lzma.decompress((bundle / "onnxruntime.wasm.xz").read_bytes())
     about = {
         **page.about,
         "checks": controls.with_units(page.about["checks"]),
@@ -224,7 +224,6 @@ def _html(page: Parts) -> str:
         "about": json.dumps(about, allow_nan=False).encode(),
         "arrays": page.arrays,
         "graph": page.graph,
-        "wasm": wasm,
     }
     script = (bundle / "page.js").read_text(encoding="utf-8")
     if "</script" in script.lower():
@@ -243,8 +242,15 @@ def _html(page: Parts) -> str:
         halo=halo and [f"{halo['low']:g}", f"{halo['high']:g}"],
         checks=bool(page.about["checks"]),
         about=page.notes,
-        parts=[(name, _packed(raw)) for name, raw in parts.items()],
+        parts=[*((name, _packed(raw)) for name, raw in parts.items()), ("wasm", _wasm())],
     )
+
+
+@functools.cache
+def _wasm() -> str:
+    """WebAssembly of onnxruntime, packed: once in a process, since it takes a second."""
+    whole = lzma.decompress((files("learn.page") / "bundle" / "onnxruntime.wasm.xz").read_bytes())
+    return _packed(whole)
 
 
 def _packed(raw: bytes) -> str:
