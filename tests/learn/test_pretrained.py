@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import learn
+import learn.adaptation
 from learn.cli import app
 from learn.data import MemoryDataset, load_tables, open_store
 from learn.data.tables import TABLES
@@ -107,6 +108,7 @@ def test_a_file_is_no_folder_to_write_nor_one_of_a_run(command: str, tmp_path: P
 
 def test_one_is_adapted_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(learn.adaptation, "PARTS", 2)  # each part takes a training
     body = write_store(tmp_path / "b.zarr", shapes=1, softness=("S1",), sites=3, frames=2)
     done = call(app, "adapt", "covers", body, "--epochs", 1, "--threads", 1)
     assert done.exit_code == 0, done.output
