@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 _PIXELS = 7e5  # larger photographs are searched at reduced size; corners are refined at full size
 _BLURRED = 9.0  # pixels from 10 to 90 % across an edge; a sharp photograph has 2 to 4
 _PARTS = 150  # smaller boards, the largest first, that are looked for where the whole is not found
-_FLAGS = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
+_FLAGS = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,15 +80,28 @@ def _search(image: Grey, columns: int, rows: int) -> Array | None:
         small = np.asarray(
             cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8
         )
-    found, corners = cv2.findChessboardCornersSB(small, (columns, rows), flags=_FLAGS)
-    if not found or corners is None:
+    rough = _rough(small, columns, rows)
+    if rough is None:
         return None
-    corners = np.asarray(corners, dtype=np.float32).reshape(-1, 1, 2)
+    corners = np.asarray(rough, dtype=np.float32).reshape(-1, 1, 2)
     corners = (corners + np.float32(0.5)) / np.float32(scale) - np.float32(0.5)
     reach = max(3, min(int(0.25 * float(np.linalg.norm(corners[1] - corners[0]))), 20))
     stop = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_MAX_ITER, 60, 1e-3)
-    corners = cv2.cornerSubPix(image, corners, (reach, reach), (-1, -1), stop)
-    return np.asarray(corners, dtype=np.float64)
+    refined = cv2.cornerSubPix(image, corners, (reach, reach), (-1, -1), stop)
+    return np.asarray(refined, dtype=np.float64)
+
+
+def _rough(image: Grey, columns: int, rows: int) -> Array | None:
+    """Inner corners, shape (n, 1, 2), as OpenCV finds them.
+
+    Enlarged first ("accuracy"), a picture takes four times as long: that is left to pictures in which nothing
+    is found otherwise, since `_search` refines the corners itself.
+    """
+    for flags in (_FLAGS, _FLAGS | cv2.CALIB_CB_ACCURACY):
+        found, corners = cv2.findChessboardCornersSB(image, (columns, rows), flags=flags)
+        if found and corners is not None:
+            return np.asarray(corners, dtype=np.float64)
+    return None
 
 
 def _upright(grid: Array) -> Array | None:

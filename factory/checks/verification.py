@@ -136,6 +136,10 @@ def finite(data: Dataset) -> list[str]:
     faults = []
     for name, spec in data.specs.items():
         if spec.dtype.startswith("f"):
+            if name in data.table:  # in memory: to read them again takes an eighth of all checks
+                if not np.isfinite(data.table[name]).all():
+                    faults.append(f"{name}: has values that are not finite")
+                continue
             array = data.array(name)
             for start in range(0, max(array.shape[0], 1), spec.shard):
                 if not np.isfinite(data.read(name, slice(start, start + spec.shard))).all():

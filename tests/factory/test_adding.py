@@ -26,11 +26,12 @@ seed: 3
 block_mm: [60, 60, 20]
 rod: {radius_mm: 2.5, length_mm: 40}
 friction: 0.6
-protocol: {shared_sites: 1, own_sites: 0, margin_mm: 15, max_angle_deg: 0, depth_mm: 1, frame_spacing_mm: 1}
+protocol:
+  {shared_sites: 1, own_sites: 0, margin_mm: 15, max_angle_deg: 0, depth_mm: 0.5, frame_spacing_mm: 0.5}
 softness: [S1]
 border_mm: 5
 cover_mm: 6
-refinement: 0.6
+refinement: 0.5
 shapes:
   - {kind: spheroid, id: flat, radius_mm: 8, half_height_mm: 5, sunk_mm: 1}
 """

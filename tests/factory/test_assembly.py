@@ -26,7 +26,7 @@ from tisim.mesh.indentation import poke_mesh
 Change = Callable[[PokeData], PokeData]
 
 COARSE = (
-    TINY.replace("depth_mm: 30", "depth_mm: 2")
+    TINY.replace("depth_mm: 30, frame_spacing_mm: 1", "depth_mm: 1, frame_spacing_mm: 0.5")
     .replace("friction: 0.6", "friction: 0.3")  # the mesh depends on it
     .replace("own_sites: 2", "own_sites: 1")
     .replace("softness: [S0, S1]", "softness: [S0]\nrefinement: 0.5")
@@ -35,7 +35,7 @@ COARSE = (
 
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One poke to 2 mm, simulated by tisim."""
+    """One poke to 1 mm, simulated by tisim."""
     return simulate_here(COARSE, tmp_path_factory.mktemp("assembly"))
 
 

@@ -53,7 +53,7 @@ def _skewed_top(seed: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
 @given(st.integers(0, 10_000))
 def test_interpolation_is_exact_for_linear_fields(seed: int) -> None:
     nodes, facets = _skewed_top(seed)
-    points = grid_points(BLOCK).reshape(-1, 3)
+    points = grid_points(BLOCK).reshape(-1, 3)[seed % 3 :: 3]
     at = interpolation(nodes, facets, points)
     np.testing.assert_allclose(at(nodes @ LINEAR + 1.0), points @ LINEAR + 1.0, atol=1e-12)
     np.testing.assert_allclose(at.weights.sum(axis=1), 1, atol=1e-12)
@@ -94,7 +94,7 @@ def _with_middles(
 @given(st.integers(0, 10_000))
 def test_eight_node_quads_are_exact_for_linear_fields_collapsed_or_not(seed: int) -> None:
     nodes, facets = _with_middles(*_skewed_top(seed))
-    points = grid_points(BLOCK).reshape(-1, 3)
+    points = grid_points(BLOCK).reshape(-1, 3)[seed % 3 :: 3]
     at = interpolation(nodes, facets, points)
     np.testing.assert_allclose(at(nodes @ LINEAR + 1.0), points @ LINEAR + 1.0, atol=1e-10)
 

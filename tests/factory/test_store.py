@@ -109,7 +109,7 @@ def test_several_shards_hold_the_same_as_one(
     from dataclasses import replace
 
     small = {
-        name: replace(spec, chunk=3, shard=6) if spec.shard > spec.chunk else spec
+        name: replace(spec, chunk=6, shard=12) if spec.shard > spec.chunk else spec
         for name, spec in schema.SPECS.items()
     }
     monkeypatch.setattr(schema, "SPECS", small)

@@ -35,7 +35,7 @@ border_mm: 5
 cover_mm: 6
 refinement: 0.5
 shapes:
-  - {{kind: sphere, id: ball, radius_mm: 5}}
+  - {{kind: cube, id: cube, side_mm: 8}}
 """
 PROTOCOL = """
 protocol:

@@ -1,5 +1,7 @@
 """Invalid parameters raise an error of one sentence that states the expectation."""
 
+from dataclasses import replace
+
 import pytest
 
 from tisim import laws
@@ -55,3 +57,22 @@ def test_one_term_may_be_a_plain_number():
 def test_unknown_law_names_the_ones_there_are():
     with pytest.raises(ValueError, match=r"expected one of st-venant-kirchhoff, .*yeoh, .*, got 'hooke'"):
         laws.get("hooke")
+
+
+def test_parameters_that_look_like_those_just_found_valid_are_checked() -> None:
+    law, good = laws.get("neo-hookean"), {"mu": 1.0, "lam": 20.0}
+    for bad in ({**good, "mu": True}, {**good, "mu": -1.0}, {**good, "mu": float("nan")}, {"mu": 1.0}):
+        law.check(good)
+        with pytest.raises(ValueError, match="neo-hookean: "):
+            law.check(bad)  # type: ignore[arg-type]
+    ogden, series = laws.get("ogden"), [1.0]
+    given = {"mu": series, "alpha": [2.0], "bulk": 20.0}
+    ogden.check(given)  # type: ignore[arg-type]
+    series[0] = float("nan")
+    with pytest.raises(ValueError, match="expected finite numbers"):
+        ogden.check(given)  # type: ignore[arg-type]
+    # another law of the same name has its own rules
+    law.check(good)
+    other = replace(law, fault=lambda _: "no")
+    with pytest.raises(ValueError, match="neo-hookean: no"):
+        other.check(good)

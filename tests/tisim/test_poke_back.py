@@ -38,8 +38,8 @@ def poke(friction: float, *, back: float | None = 0.5e-3, refinement: float = 1.
 
 @pytest.fixture(scope="module")
 def there_and_back() -> tisim.Result:
-    """To 3 mm at a friction coefficient of 0.1, and back to a depth between two frames."""
-    return poke(0.1, back=0.4e-3)
+    """To 3 mm at a friction coefficient of 0.1, and back to a depth between two frames, on a coarse mesh."""
+    return poke(0.1, back=0.4e-3, refinement=0.6)
 
 
 def missing(result: tisim.Result, depth: np.ndarray) -> np.ndarray:
@@ -55,7 +55,7 @@ def test_what_sliding_takes_agrees_with_axisymmetric_elements(there_and_back: ti
     """FElupe at a friction coefficient of 0.1 loses up to 3.5 % of the force.
 
     The table is made by `python -m benchmarks.blind.indentation.make_table --only "thin friction 0.1"`. The
-    loss is in error by 1 % of the force on the default mesh, by 0.5 % on a 1.5 times finer one.
+    loss is in error by 0.3 % of the force on this mesh as on the default one.
     """
     result = there_and_back
     assert result.status is tisim.Status.CONVERGED
@@ -64,7 +64,7 @@ def test_what_sliding_takes_agrees_with_axisymmetric_elements(there_and_back: ti
     at = (depth[:-1] > 0.7) & (depth[:-1] < 2.9)
     theirs = 1.0 - back[at] / into[:-1][at]
     assert theirs.max() > 0.03
-    assert missing(result, 1e-3 * depth[:-1][at]) == pytest.approx(theirs, abs=0.013)
+    assert missing(result, 1e-3 * depth[:-1][at]) == pytest.approx(theirs, abs=0.008)
 
 
 @pytest.mark.slow

@@ -32,11 +32,11 @@ def test_a_squeezed_cover_is_as_stiff_as_axisymmetric_elements_have_it() -> None
         block=tisim.Block(size=(0.1, 0.1, 0.03), inclusion=cylinder),
         rod=tisim.Rod(radius=3e-3, edge_radius=1.2e-3),
         depth=3.15e-3,
-        frame_spacing=0.35e-3,
+        frame_spacing=0.525e-3,
         refinement=1.0,
     )
     (result,) = tisim.simulate([poke], workers=1)
     assert result.status is tisim.Status.CONVERGED
     theirs = np.interp(1e3 * result.load, table["depth"], np.array(table["in"]) * TABLE["core"]["rigid"])
     ours = 1e6 * result.rod_force[:, 2] / SHEAR
-    assert abs(ours[4:]) == pytest.approx(theirs[4:], rel=0.035)
+    assert abs(ours[2:]) == pytest.approx(theirs[2:], rel=0.035)

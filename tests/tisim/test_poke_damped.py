@@ -205,7 +205,7 @@ VISCOUS = replace(SOFT, viscosity=tisim.Prony(fractions=(0.5,), times=(0.2,)))
 @pytest.mark.parametrize(
     "options",
     [
-        {},
+        {"element": "hex8"},
         # time advances once, for any number of motion steps
         {"material": VISCOUS, "course": tisim.Course(frames=(0.1, 0.2)).ramp(to=0.0008, speed=0.004)},
     ],

@@ -322,7 +322,9 @@ def test_a_sphere_on_a_viscous_half_space_in_loading() -> None:
     depth, end = 0.8e-3, 4.0
     times = (1.0, 2.0, 4.0)
     push = tisim.Course(frames=times, growth=0.4).ramp(to=depth, duration=end)
-    scene = tisim.Poke(material=replace(elastic, viscosity=PRONY), rod=ball, friction=0.0, course=push)
+    scene = tisim.Poke(
+        material=replace(elastic, viscosity=PRONY), rod=ball, friction=0.0, course=push, refinement=0.8
+    )
     found = force(tisim.simulate(scene))
     law = force(tisim.simulate(replace(scene, material=elastic)))
     # Hertz at constant speed: kernel (3/2) s^(1/2) / t^(3/2) ds

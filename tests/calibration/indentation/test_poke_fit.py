@@ -34,8 +34,8 @@ def poke() -> ModelObjective[IndentationModel]:
     scene = tisim.Poke(
         material=truth,
         block=tisim.Block(size=(0.06, 0.06, 0.03)),
-        depth=1e-3,
-        frame_spacing=1e-4,
+        depth=0.7e-3,
+        frame_spacing=0.7e-4,
         refinement=0.8,
     )
     (result,) = tisim.simulate([scene], workers=1)
