@@ -1,4 +1,4 @@
-"""Pokes of crushed tissue: more points of contact, steps cut before a motion is tried, late frames."""
+"""Pokes of crushed tissue: contact points and areas, steps cut before a motion is tried, late frames."""
 
 from __future__ import annotations
 
@@ -74,6 +74,71 @@ def test_deep_penetration_adds_points_that_keep_the_friction(
         assert found == pytest.approx(wanted, abs=0.1 * float(np.linalg.norm(wanted)))
 
 
+@pytest.mark.parametrize(("across", "along", "factor"), [(2.0, 3.0, 6.0), (9.0, 9.0, 30.0), (0.5, 1.0, 1.0)])
+def test_contact_acts_on_the_area_of_the_deformed_surface(
+    mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch, across: float, along: float, factor: float
+) -> None:
+    """Up to 30 times that at rest; a surface that is compressed keeps the latter."""
+    system, _ = start(mesh)
+    at_rest = system._area.copy()
+    stretched = mesh.nodes * [across, along, 1.0]
+    system.accept(stretched)
+    assert system._area == pytest.approx(at_rest)  # no penetration, nothing follows
+    monkeypatch.setattr(contact, "FOLLOWS_FROM", -1.0)
+    system.accept(stretched, follow=False)
+    assert system._area == pytest.approx(at_rest)
+    system.accept(stretched)
+    assert system._area == pytest.approx(factor * at_rest)
+    system.accept(mesh.nodes)
+    assert system._area == pytest.approx(at_rest)  # back with the surface
+
+
+@pytest.mark.parametrize("added", [False, True])
+def test_areas_that_follow_keep_the_friction(
+    mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch, added: bool
+) -> None:
+    """Also where more points are added later."""
+    pulls = []
+    for follows in (False, True):
+        system, block = start(mesh)
+        monkeypatch.setattr(contact, "FINER_FROM", 0.22)
+        monkeypatch.setattr(contact, "FOLLOWS_FROM", 0.0 if follows else 0.18)
+        system.accept(step_to(system, block, 0.0003))
+        assert system.follows is follows
+        if added:
+            monkeypatch.setattr(contact, "FINER_FROM", 0.0)
+            system._slip = system._memory.copy()
+            system.accept(system.previous)
+        pulls.append(np.einsum("fq,fqi->i", system._area, system._memory))
+    assert np.linalg.norm(pulls[0]) > 0.0
+    assert pulls[1] == pytest.approx(pulls[0], abs=0.01 * float(np.linalg.norm(pulls[0])))
+
+
+def test_the_areas_of_a_motion_follow_until_it_is_nearly_at_rest(
+    mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Otherwise each state would be out of equilibrium by the change of its areas."""
+    system, block = start(mesh)
+    system.move_to(0.0003)
+    drags: list[tuple[float, bool]] = []
+    accept = system.accept
+
+    def noted(x: np.ndarray, *, follow: bool = True) -> None:
+        assert system.drag is not None
+        drags.append((float(np.linalg.norm(system.drag.forces(x))) / system.rod_force(), follow))
+        accept(x, follow=follow)
+
+    monkeypatch.setattr(system, "accept", noted)
+    monkeypatch.setattr(damped, "NEAR", 0.5)  # rest is sought late
+    tolerance = 2e-3
+    moved = damped.come_to_rest(
+        system, block, system.previous, tolerance=tolerance, max_iterations=160, kept=True
+    )
+    assert moved.status is Status.CONVERGED
+    assert {follow for _, follow in drags} == {False, True}
+    assert all(follow is (drag > tolerance) for drag, follow in drags)
+
+
 def test_an_earlier_state_has_its_own_points(mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     system, block = start(mesh)
     system.accept(step_to(system, block, 0.0003))
@@ -82,18 +147,24 @@ def test_an_earlier_state_has_its_own_points(mesh: tisim.Mesh, monkeypatch: pyte
     before, x = system.remembered(), system.previous
     wanted, _ = system.residual(x)
     monkeypatch.setattr(contact, "FINER_FROM", 0.0)
+    monkeypatch.setattr(contact, "FOLLOWS_FROM", 0.0)
     system.accept(step_to(system, block, 0.0006))
     assert system.finer
+    assert system.follows
     system.recall(before)
     system.move_to(0.0006)
     system.touch(x)
     assert not system.finer
+    assert not system.follows
     assert system.residual(x)[0] == pytest.approx(wanted, abs=1e-12)
 
 
-def test_a_poke_with_more_points_has_the_same_force(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("limit", ["FINER_FROM", "FOLLOWS_FROM"])
+def test_a_poke_with_other_points_or_areas_has_the_same_force(
+    monkeypatch: pytest.MonkeyPatch, limit: str
+) -> None:
     plain = solve_poke(SCENE)
-    monkeypatch.setattr(contact, "FINER_FROM", 0.0)
+    monkeypatch.setattr(contact, limit, 0.0)
     finer = solve_poke(SCENE)
     assert finer.ok
     assert not np.array_equal(finer.rod_force, plain.rod_force)

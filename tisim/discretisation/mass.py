@@ -52,7 +52,7 @@ def facet_mass(mesh: Mesh, facets: NDArray[np.int32], mass: float) -> Array:
 
     It is the scaled consistent diagonal, as in `lumped_mass`: row sums are negative at some corners.
     """
-    n, area = facet_areas(mesh, facets)
+    n, area = facet_areas(mesh.nodes, facets)
     share = np.zeros(mesh.n_nodes)
     np.add.at(share, facets.ravel(), (area @ n**2).ravel())
     return share * (mass / share.sum())

@@ -212,17 +212,17 @@ def facet_quadrature(n_nodes: int, order: int = 3) -> tuple[Array, Array, Array]
     return *facet_shape_functions(n_nodes, np.column_stack([r, s])), weights * 0.25 * (1 - r)
 
 
-def facet_areas(mesh: Mesh, facets: NDArray[np.int32], order: int = 3) -> tuple[Array, Array]:
-    """Shape functions (q, a) at a facet's points, and the rest areas of the points (f, q) [m2]."""
+def facet_areas(nodes: Array, facets: NDArray[np.int32], order: int = 3) -> tuple[Array, Array]:
+    """Shape functions (q, a) at a facet's points, and areas of the points (f, q) [m2] at positions (n, 3)."""
     n, dn, w = facet_quadrature(facets.shape[1], order)
-    tangents = np.einsum("fai,qad->fqdi", mesh.nodes[facets], dn)
+    tangents = np.einsum("fai,qad->fqdi", nodes[facets], dn)
     area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2) * w
     return n, area
 
 
 def facet_load(mesh: Mesh, facets: NDArray[np.int32]) -> Array:
     """Consistent nodal loads of a unit traction [m2], shape (n,); they sum to the facets' area."""
-    n, area = facet_areas(mesh, facets)
+    n, area = facet_areas(mesh.nodes, facets)
     share = np.zeros(mesh.n_nodes)
     np.add.at(share, facets.ravel(), (area @ n).ravel())
     return share

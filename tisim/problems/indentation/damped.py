@@ -125,7 +125,8 @@ def come_to_rest(
             motion, its_drag = outcome.x - x, drag
             force = drag * float(np.linalg.norm(motion)) / max(system.rod_force(), 1e-12)
             x, iterations, lowest = outcome.x, outcome.iterations, min(lowest, drag)
-            system.accept(x)
+            # areas that change with each state would keep a motion that is at rest in motion
+            system.accept(x, follow=force > tolerance)
             system.move_to(system.depth)
             near = force < NEAR * tolerance and drag < AGAIN * tried
             tried = drag if near else tried

@@ -56,7 +56,7 @@ class FirstTouch:
         if not len(facets):
             raise _off_the_top(scene, mesh)
         if np.ptp(heights) > FLAT * below:
-            shape, _ = facet_areas(mesh, facets, SAMPLES)
+            shape, _ = facet_areas(mesh.nodes, facets, SAMPLES)
             corners = mesh.nodes[np.unique(facets)]
             self._points = np.concatenate([(shape @ mesh.nodes[facets]).reshape(-1, 3), corners])
             found = _height_at(mesh, facets, np.asarray(scene.site))

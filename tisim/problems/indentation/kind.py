@@ -44,7 +44,8 @@ def contact_version(friction: float) -> int:
 
     A dataset has one version only. Version 3 is stiffer than 2 where the surface slides (`sliding`), and the
     rings of elements beside the rod are closer to it; without friction, and where the surface sticks, nothing
-    has changed, so that datasets of version 2 go on.
+    has changed, so that datasets of version 2 go on. What applies only once the surface is deep in the rod
+    (`FOLLOWS_FROM` and `FINER_FROM` of `system.py`) has no version: frames before it are the same.
     """
     return 3 if sliding(friction) > 0.0 else 2
 

@@ -45,6 +45,11 @@ WATCHED_PER_SIDE = 7
 # Penetration of an accepted state, as a fraction of the edge radius, from which facets have FINER more points
 # of contact per side (and WATCHED_FINER are measured): over crushed tissue the edge passes between fewer.
 FINER_FROM, FINER, WATCHED_FINER = 0.22, 2, 10
+# Penetration of an accepted state, as a fraction of the edge radius, from which the contact acts on the areas
+# of the deformed surface where these are larger than at rest, up to LARGEST_AREA times. At 30 of 32 mm the
+# surface over the edge is stretched to 18 times its area: per area at rest, its contact would be as many
+# times softer, and the edge would pass through it.
+FOLLOWS_FROM, LARGEST_AREA = 0.18, 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +82,8 @@ class Remembered(NamedTuple):
     slip: Array
     gap: Array
     finer: bool
+    follows: bool
+    area: Array
     history: History | None
     parts: tuple[Array, Array] | None
 
@@ -92,6 +99,7 @@ class PokeSystem:
     far : condensed far tissue, if the body is the near part of a block; else None.
     drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
     finer : True once the facets have more contact points (`FINER_FROM`).
+    follows : True once the contact's areas are those of the deformed surface (`FOLLOWS_FROM`).
     report : results of the last residual or linearisation, shape (6,): force on the rod (3) [N], smallest
         distance [m], area in contact [m2], 1 if friction acts.
     """
@@ -123,6 +131,7 @@ class PokeSystem:
         )
         self._measure, self._energy, self._assemble = contact_kernels()
         self._place_points(finer=False)
+        self.follows = False
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
         self.far: FarField | None = None
@@ -149,10 +158,12 @@ class PokeSystem:
 
     def _place_points(self, *, finer: bool) -> None:
         """Place contact points that do not touch yet, and those at which the penetration is measured."""
-        mesh, more = self.discretisation.mesh, FINER if finer else 0
-        shape, self._area = facet_areas(mesh, self.facets, POINTS_PER_SIDE[self.facets.shape[1]] + more)
+        rest, more = self.discretisation.mesh.nodes, FINER if finer else 0
+        self._per_side = POINTS_PER_SIDE[self.facets.shape[1]] + more
+        shape, self._rest_area = facet_areas(rest, self.facets, self._per_side)
+        self._area = self._rest_area
         self._shape = np.ascontiguousarray(shape)
-        between = facet_areas(mesh, self.facets, WATCHED_FINER if finer else WATCHED_PER_SIDE)[0]
+        between = facet_areas(rest, self.facets, WATCHED_FINER if finer else WATCHED_PER_SIDE)[0]
         self._watched = np.ascontiguousarray(between), np.empty((len(self.facets), len(between)))
         points = self._area.shape
         self._memory, self._slip = np.zeros((*points, 3)), np.zeros((*points, 3))
@@ -168,6 +179,14 @@ class PokeSystem:
         # the nearer two places on a facet are, the less their shape functions differ
         apart = np.linalg.norm(self._shape[:, None] - shape, axis=2)
         self._memory = np.ascontiguousarray(slip[:, apart.argmin(axis=1)])
+        if self.follows:
+            self._area = self._areas(self.previous)
+
+    def _areas(self, x: Array) -> Array:
+        """Areas (f, q) [m2] of the contact points on the surface at x (n, 3), at least those at rest."""
+        now = facet_areas(x, self.facets, self._per_side)[1]
+        found: Array = np.clip(now, self._rest_area, LARGEST_AREA * self._rest_area)
+        return found
 
     @property
     def tip(self) -> Array:
@@ -199,14 +218,24 @@ class PokeSystem:
         self.body.begin(dt)
         self._known = []
 
-    def accept(self, x: Array) -> None:
-        """Accept x as converged state: update the history of friction, material and distorted elements."""
+    def accept(self, x: Array, *, follow: bool = True) -> None:
+        """Accept x as converged state: update the history of friction, material and distorted elements.
+
+        With `follow`, the contact's areas follow the surface once it is deep enough in the rod: the forces at
+        x change, and the next step finds their equilibrium.
+        """
         if self.body.remembers:
             self.body.accept(x)
             self._known = []
         self._memory = self._slip.copy()
         if not self.finer and self.overlap(x) > FINER_FROM * self.edge:
             self._add_points()
+        if self.drag is None and not self.follows:  # a drag may hold the surface deep in the rod
+            self.follows = self.overlap(x) > FOLLOWS_FROM * self.edge
+        if follow and self.follows:
+            area = self._areas(x)
+            self._memory *= (self._area / area)[:, :, None]  # friction keeps its forces
+            self._area = area
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
@@ -223,6 +252,8 @@ class PokeSystem:
             slip=self._memory,
             gap=self._gap.copy(),
             finer=self.finer,
+            follows=self.follows,
+            area=self._area,
             history=deepcopy(self.body.history),
             parts=None if self._parts is None else self._parts.state(),
         )
@@ -233,6 +264,7 @@ class PokeSystem:
         self.previous_axis, self._previous_start = earlier.pose
         if self.finer != earlier.finer:
             self._place_points(finer=earlier.finer)
+        self.follows, self._area = earlier.follows, earlier.area
         self._memory, self._gap = earlier.slip, earlier.gap
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
