@@ -93,6 +93,32 @@ def test_contact_acts_on_the_area_of_the_deformed_surface(
     assert system._area == pytest.approx(at_rest)  # back with the surface
 
 
+@pytest.mark.parametrize(
+    ("rod", "unit"),
+    [
+        (tisim.Rod(), 1e-3),
+        (tisim.Rod(edge_radius=5e-4), 5e-4),
+        (tisim.Rod(tip="hemisphere"), 1e-3),  # 0.4 of its radius
+    ],
+)
+@pytest.mark.parametrize(("part", "reached"), [(0.17, []), (0.19, ["follows"]), (0.23, ["follows", "finer"])])
+def test_penetrations_are_judged_by_the_edge_radius_that_the_penalty_has(
+    mesh: tisim.Mesh,
+    monkeypatch: pytest.MonkeyPatch,
+    rod: tisim.Rod,
+    unit: float,
+    part: float,
+    reached: list[str],
+) -> None:
+    system = PokeSystem(replace(SCENE, rod=rod), Discretisation.build(mesh, mesh.node_sets["base"]))
+    monkeypatch.setattr(system, "overlap", lambda _: part * unit)
+    system.accept(mesh.nodes)
+    assert [name for name in ("follows", "finer") if getattr(system, name)] == reached
+    assert not steps.too_deep(mesh.nodes, system)
+    monkeypatch.setattr(system, "overlap", lambda _: 0.51 * unit)
+    assert steps.too_deep(mesh.nodes, system)
+
+
 @pytest.mark.parametrize("added", [False, True])
 def test_areas_that_follow_keep_the_friction(
     mesh: tisim.Mesh, monkeypatch: pytest.MonkeyPatch, added: bool

@@ -89,7 +89,7 @@ def too_deep(x: Array, system: PokeSystem) -> bool:
 
     The rod touches the surface alone: nothing else keeps it out of a rigid inclusion when tissue is crushed.
     """
-    if system.overlap(x) > REFUSE_AT * system.edge:
+    if system.overlap(x) > REFUSE_AT * system.rounding:
         return True
     return system.scene.mesh is None and tissue_left(system.scene, system.tip, system.axis)[0] == 0.0
 
@@ -100,7 +100,7 @@ def starts_deep(guess: Array, system: PokeSystem) -> bool:
     The pressure grows with the fifth power of the penetration, so that an iteration lowers a deep one by a
     fifth at most.
     """
-    return system.overlap(guess) > max(DEEP * system.penetration, DEEP_AT_LEAST * system.edge)
+    return system.overlap(guess) > max(DEEP * system.penetration, DEEP_AT_LEAST * system.rounding)
 
 
 def next_step(step: float, iterations: int) -> float:

@@ -33,8 +33,9 @@ STIFFER_SLIDING = 2.0
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
 TANGENT_STIFFNESS = 50.0
-# Upper limit of the edge radius in the contact stiffness, as a fraction of the rod's radius. With its whole
-# radius a hemisphere would penetrate so far that its force is 1.3 % low, whatever the mesh.
+# Upper limit of the edge radius in the contact stiffness and in limits of the penetration, as a fraction of
+# the rod's radius. With its whole radius a hemisphere would penetrate so far that its force is 1.3 % low,
+# whatever the mesh.
 ROUNDEST = 0.4
 # Contact points along a facet's side, by its number of nodes. With three on the facets of hex20 the rod's
 # edge passes between them where the tissue is stretched most (studies/depth).
@@ -96,6 +97,7 @@ class PokeSystem:
     axis : direction of the rod, shape (3,).
     depth : depth of the rod [m].
     facets : facets of the top that the rod can touch, shape (f, a).
+    rounding : edge radius of the rod, at most ROUNDEST of its radius [m]; unit of penetrations.
     far : condensed far tissue, if the body is the near part of a block; else None.
     drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
     finer : True once the facets have more contact points (`FINER_FROM`).
@@ -124,7 +126,7 @@ class PokeSystem:
         self.start = self._previous_start = self._touch.tip(self.axis)
         self._slot = discretisation.pattern.slots(self.facets)
         g = self.body.moduli.shear_modulus
-        edge = min(self.edge, ROUNDEST * rod.radius)
+        edge = self.rounding = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
         self._law = np.array(
             [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
@@ -228,10 +230,10 @@ class PokeSystem:
             self.body.accept(x)
             self._known = []
         self._memory = self._slip.copy()
-        if not self.finer and self.overlap(x) > FINER_FROM * self.edge:
+        if not self.finer and self.overlap(x) > FINER_FROM * self.rounding:
             self._add_points()
         if self.drag is None and not self.follows:  # a drag may hold the surface deep in the rod
-            self.follows = self.overlap(x) > FOLLOWS_FROM * self.edge
+            self.follows = self.overlap(x) > FOLLOWS_FROM * self.rounding
         if follow and self.follows:
             area = self._areas(x)
             self._memory *= (self._area / area)[:, :, None]  # friction keeps its forces
