@@ -15,8 +15,9 @@ from tisim.mesh.indentation import poke_mesh
 from tisim.nonlinear.newton import Outcome
 from tisim.problems.indentation.condensed import CondensedBlock
 from tisim.problems.indentation.damped import come_to_rest, solve_step
+from tisim.problems.indentation.far_field import Drag
 from tisim.problems.indentation.solve import solve_poke
-from tisim.problems.indentation.system import Drag, PokeSystem
+from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
 SOFT = tisim.material_from_moduli("neo-hookean", shear_modulus=30e3, bulk_modulus=600e3)

@@ -22,8 +22,8 @@ from tisim.linear.direct import Condensation, LinearSolveError
 from tisim.linear.krylov import FactorGMRES
 from tisim.nonlinear.contact_newton import contact_newton, settled
 from tisim.nonlinear.newton import CRUSHED, Outcome
-from tisim.problems.indentation.far_field import FarField, Part
-from tisim.problems.indentation.system import Drag, PokeSystem
+from tisim.problems.indentation.far_field import Drag, FarField, Part
+from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]

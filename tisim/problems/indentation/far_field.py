@@ -1,4 +1,4 @@
-"""The near part of a block, and the tissue far from the rod, condensed on the interface to it."""
+"""The near part of a block, the far tissue condensed on the interface to it, and a drag on its nodes."""
 
 from __future__ import annotations
 
@@ -98,3 +98,24 @@ def _with_all_pairs(pattern: Pattern, rows: Ints) -> tuple[Pattern, Ints, Ints]:
     np.cumsum(np.bincount(keys // n, minlength=n), out=indptr[1:])
     whole = replace(pattern, indptr=indptr, indices=(keys % n).astype(np.int32), slot=pattern.slot[:0])
     return whole, np.searchsorted(keys, own).astype(np.int32), np.searchsorted(keys, pairs).astype(np.int32)
+
+
+@dataclass(frozen=True, eq=False)
+class Drag:
+    """Resistance to motion: one implicit step of a viscous motion, stiffness = viscosity / step length.
+
+    Attributes
+    ----------
+    start : positions at the start of the step [m], shape (n, 3).
+    stiffness : stiffness at each node [N/m], shape (n,).
+    """
+
+    start: Array
+    stiffness: Array
+
+    def energy(self, x: Array) -> float:
+        return 0.5 * float(self.stiffness @ ((x - self.start) ** 2).sum(axis=1))
+
+    def forces(self, x: Array) -> Array:
+        found: Array = self.stiffness[:, None] * (x - self.start)
+        return found

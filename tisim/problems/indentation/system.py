@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy, deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
 from tisim.mesh.indentation import sliding
-from tisim.problems.indentation.far_field import FarField, Part
+from tisim.problems.indentation.far_field import Drag, FarField, Part
 from tisim.problems.indentation.first_touch import FirstTouch, near_facets
 from tisim.problems.indentation.turning import axis_at, rotation
 from tisim.scene import Poke
@@ -51,27 +51,6 @@ FINER_FROM, FINER, WATCHED_FINER = 0.22, 2, 10
 # surface over the edge is stretched to 18 times its area: per area at rest, its contact would be as many
 # times softer, and the edge would pass through it.
 FOLLOWS_FROM, LARGEST_AREA = 0.18, 30.0
-
-
-@dataclass(frozen=True, eq=False)
-class Drag:
-    """Resistance to motion: one implicit step of a viscous motion, stiffness = viscosity / step length.
-
-    Attributes
-    ----------
-    start : positions at the start of the step [m], shape (n, 3).
-    stiffness : stiffness at each node [N/m], shape (n,).
-    """
-
-    start: Array
-    stiffness: Array
-
-    def energy(self, x: Array) -> float:
-        return 0.5 * float(self.stiffness @ ((x - self.start) ** 2).sum(axis=1))
-
-    def forces(self, x: Array) -> Array:
-        found: Array = self.stiffness[:, None] * (x - self.start)
-        return found
 
 
 class Remembered(NamedTuple):
