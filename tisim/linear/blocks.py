@@ -107,8 +107,9 @@ class FullMatrix:
         col = np.concatenate([pattern.indices, rows[off]])
         order = np.lexsort((col, row))
         keys = row[order].astype(np.int64) * n + col[order]
-        self._source = np.concatenate([np.arange(nb), off])[order]
-        self._turned = np.flatnonzero(order >= nb)
+        # rows of all blocks, followed by all of them transposed
+        self._source = np.concatenate([np.arange(nb), nb + off])[order]
+        self._both, self._data = np.empty((2 * nb, 3, 3)), np.empty((len(order), 3, 3))
         self._indptr = np.zeros(n + 1, dtype=np.int32)
         np.cumsum(np.bincount(row, minlength=n), out=self._indptr[1:])
         self._indices = col[order].astype(np.int32)
@@ -119,9 +120,14 @@ class FullMatrix:
         self._place = np.where(there, np.searchsorted(keys, np.where(there, i * n + j, 0)), -1)
 
     def filled(self, blocks: Array, more: Array | None = None) -> sparse.bsr_matrix:
-        """Matrix of blocks (nb, 3, 3) of the upper triangle, plus `more` (m, a, a, 3, 3) by node pair."""
-        data = blocks[self._source]
-        data[self._turned] = data[self._turned].transpose(0, 2, 1)
+        """Matrix of blocks (nb, 3, 3) of the upper triangle, plus `more` (m, a, a, 3, 3) by node pair.
+
+        It is valid until the next call: new memory for each matrix costs more than the values in it.
+        """
+        nb = len(blocks)
+        self._both[:nb], self._both[nb:] = blocks, blocks.transpose(0, 2, 1)
+        data = self._data
+        np.take(self._both, self._source, axis=0, out=data, mode="clip")
         if more is not None:
             some = (self._place >= 0) & more.any(axis=(3, 4))
             np.add.at(data, self._place[some], more[some])

@@ -133,23 +133,26 @@ class Condensation:
         eliminated = self._coupling.T @ self._lu.solve(self._coupling.toarray())
         return np.asarray(full[outer][:, outer].toarray() - eliminated, dtype=np.float32)
 
-    def reduce(self, rhs: Array) -> Array:
-        """K_IF K_FF^-1 rhs_F, shape (3 ni,); the rows I of rhs (n, 3) are ignored."""
+    def eliminate(self, rhs: Array) -> Array:
+        """The rows F of rhs (n, 3) eliminated, shape (3 n,), for `passed_on` and `expand`; linear in rhs."""
         b = rhs.ravel().copy()
         b[self._kept] = 0.0
         if self._pardiso is not None:
-            return -np.asarray(self._pardiso.forward(b))[self._kept]
-        return np.asarray(self._coupling.T @ self._lu.solve(b[~self._kept]))
+            return np.asarray(self._pardiso.forward(b))
+        b[~self._kept] = self._lu.solve(b[~self._kept])
+        b[self._kept] = -(self._coupling.T @ b[~self._kept])
+        return b
 
-    def expand(self, rhs: Array, kept: Array) -> Array:
+    def passed_on(self, eliminated: Array) -> Array:
+        """K_IF K_FF^-1 rhs_F, shape (3 ni,)."""
+        return -eliminated[self._kept]
+
+    def expand(self, eliminated: Array, kept: Array) -> Array:
         """x (n, 3) with x_I = kept (3 ni,) and K_FF x_F = rhs_F - K_FI x_I."""
-        b = rhs.ravel().copy()
-        if self._pardiso is not None:
-            b[self._kept] = 0.0
-            b = self._pardiso.forward(b)
-            b[self._kept] = kept
-            return np.asarray(self._pardiso.backward(b)).reshape(-1, 3)
-        x = np.empty_like(b)
+        x = eliminated.copy()
         x[self._kept] = kept
-        x[~self._kept] = self._lu.solve(b[~self._kept] - self._coupling @ kept)
+        if self._pardiso is not None:
+            x = np.asarray(self._pardiso.backward(x))
+        else:
+            x[~self._kept] -= self._lu.solve(self._coupling @ kept)
         return x.reshape(-1, 3)

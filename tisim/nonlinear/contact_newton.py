@@ -28,6 +28,10 @@ BALANCE = 0.005
 # Factor by which the residual may grow in a step that lowers the energy.
 GROWTH = 2.0
 ATTEMPTS = 6
+# Relative residual of the linear solves: FORCING in the first iteration, then SHARE of the factor by which
+# the last iteration lowered the nonlinear residual, between FINEST and FORCING. After an exact step a change
+# of contact leaves 0.1 to 0.4 of the residual as well, so that better solves are in vain (studies/depth).
+FORCING, SHARE, FINEST = 0.1, 0.3, 1e-2
 
 
 class ContactSystem(Protocol):
@@ -72,7 +76,7 @@ def contact_newton(
         if iteration == max_iterations:
             break
         system.linearise(x)
-        forcing = 3e-2 if iteration == 0 else float(np.clip(0.1 * relative / previous, 5e-3, 3e-2))
+        forcing = float(np.clip(SHARE * relative / previous, FINEST, FORCING)) if iteration else FORCING
         try:
             found, status, radius = _step(system, x, residual, radius, forcing)
         except LinearSolveError:

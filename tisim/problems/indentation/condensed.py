@@ -23,7 +23,7 @@ from tisim.linear.krylov import FactorGMRES
 from tisim.nonlinear.contact_newton import contact_newton, settled
 from tisim.nonlinear.newton import CRUSHED, Outcome
 from tisim.problems.indentation.far_field import Drag, FarField, Part
-from tisim.problems.indentation.system import PokeSystem
+from tisim.problems.indentation.system import Forces, PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -67,6 +67,16 @@ class _Split:
     beyond: Bools
     condensation: Condensation
     far: FarField
+
+    def together(self, x: Array, near: Forces) -> Forces:
+        """Forces of the whole block at x, those of its near part being `near`."""
+        far = Forces(*self.body.forces_and_energy(x))
+        dead = float(np.vdot(self.body.dead_load, x - self.body.discretisation.mesh.nodes))
+        return Forces(
+            near.force + far.force,
+            near.energy + far.energy + dead,  # each part has the potential of the whole dead load
+            min(near.min_jacobian, far.min_jacobian),
+        )
 
 
 class CondensedBlock:
@@ -130,6 +140,7 @@ class CondensedBlock:
         split.near.body.follow(system.body, split.inside)
         split.body.follow(system.body, ~split.inside)
         part = system.restricted(split.near, split.far)
+        near = Forces(*split.near.body.forces_and_energy(x))
         previous, used = np.inf, 0
         rounds = 0
         while True:
@@ -144,9 +155,10 @@ class CondensedBlock:
             if rounds > 1 and relative > SLOW * previous:
                 self._stale = True
             try:
-                left = self._place(split, x)
+                left = self._place(split, x, near)
             except LinearSolveError:
                 return Outcome(x, Status.SINGULAR, relative, used)
+            part.know(x, near)
             enough = REDUCTION * relative
             goal = enough if relative <= tolerance else max(GOAL * tolerance, enough)
             outcome = contact_newton(
@@ -160,10 +172,14 @@ class CondensedBlock:
                 rounds = 0
             else:
                 return Outcome(x, outcome.status, relative, used)
-            found, share = self._sound(x, self._follow(split, x, outcome.x, left))
+            moved, near = self._follow(split, x, outcome.x, left), part.elements_at(outcome.x)
+            system.know(moved, split.together(moved, near))
+            found, share = self._sound(x, moved)
             if found is None:
                 return Outcome(x, Status.INVERTED, relative, used)
             self._stale = share < 1.0  # the step is too large for the linearised far tissue
+            if self._stale:
+                near = Forces(*split.near.body.forces_and_energy(found))
             x = found
             self.rounds += 1
 
@@ -177,8 +193,11 @@ class CondensedBlock:
         self.linear_iterations += linear.iterations
         linear.factorisations = linear.iterations = 0
 
-    def _place(self, split: _Split, x: Array) -> Array:
-        """Place the far field at x; return the residual forces on the far rows [N], shape (n_far, 3)."""
+    def _place(self, split: _Split, x: Array, near: Forces) -> Array:
+        """Place the far field at x, the near part's forces there being `near`.
+
+        Returns the residual forces on the far rows, eliminated (`Condensation.eliminate`).
+        """
         discretisation = split.body.discretisation
         if self._stale:
             blocks, _, _ = split.body.stiffness(x)
@@ -187,9 +206,9 @@ class CondensedBlock:
             self.condensations += 1
             self.factorisations += 1
             self._stale = False
-        force = self._system.internal - split.near.body.internal_forces(x)[0]
-        left = split.body.out_of_balance(force)
-        passed_on = split.condensation.reduce(left).reshape(-1, 3)
+        force = self._system.internal - near.force
+        left = split.condensation.eliminate(split.body.out_of_balance(force))
+        passed_on = split.condensation.passed_on(left).reshape(-1, 3)
         split.far.place(x, force[split.far.nodes] - passed_on)
         return left
 

@@ -54,19 +54,24 @@ class FarField:
         self.rows = pattern.index[nodes]
         self.factor_pattern, self._of_near, self._of_pairs = _with_all_pairs(pattern, self.rows)
         self._pairs = np.triu_indices(len(nodes))
+        self._alone = np.zeros((self.factor_pattern.n_blocks, 3, 3))
+        self._joined = np.empty_like(self._alone)
 
     def set_stiffness(self, stiffness: Singles) -> None:
         """Set the symmetric stiffness (3 n, 3 n) [N/m]."""
         n = len(self.nodes)
         i, j = self._pairs
-        self._stiffness, self._blocks = stiffness, stiffness.reshape(n, 3, n, 3)[i, :, j]
+        self._stiffness = stiffness
+        self._alone[self._of_pairs] = stiffness.reshape(n, 3, n, 3)[i, :, j]
 
     def joined(self, blocks: Array) -> Array:
-        """Blocks of the near tangent plus those of the stiffness, in the order of `factor_pattern`."""
-        whole = np.zeros((self.factor_pattern.n_blocks, 3, 3))
-        whole[self._of_near] = blocks
-        whole[self._of_pairs] += self._blocks
-        return whole
+        """Blocks of the near tangent plus those of the stiffness, in the order of `factor_pattern`.
+
+        They are valid until the next call.
+        """
+        self._joined[:] = self._alone
+        self._joined[self._of_near] += blocks
+        return self._joined
 
     def place(self, x: Array, force: Array) -> None:
         """Linearise about x, where the far tissue exerts force (n, 3) [N] with its inner nodes at rest."""

@@ -68,6 +68,22 @@ class Remembered(NamedTuple):
     parts: tuple[Array, Array] | None
 
 
+class Forces(NamedTuple):
+    """Internal forces (n, 3) [N], energy [J] and smallest det F at some positions."""
+
+    force: Array
+    energy: float
+    min_jacobian: float
+
+
+class _Known(NamedTuple):
+    """Forces at x of the elements alone, and with the far field."""
+
+    x: Array
+    elements: Forces
+    whole: Forces
+
+
 class PokeSystem:
     """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
 
@@ -119,7 +135,7 @@ class PokeSystem:
         self.drag: Drag | None = None
         self.linearisations = 0
         self.min_jacobian = 1.0
-        self._known: list[tuple[Array, tuple[Array, float, float]]] = []
+        self._known: list[_Known] = []
         self.previous = mesh.nodes.copy()
         self.depth = self.previous_depth = 0.0
         self._pose(0.0)
@@ -288,20 +304,32 @@ class PokeSystem:
         self._measure(x, self.facets, shape, self._rod, distance)
         return max(-float(distance.min()), 0.0)
 
-    def _forces_at(self, x: Array) -> tuple[Array, float, float]:
-        """Internal forces (n, 3) [N], energy [J] and smallest det F of the body.
+    def elements_at(self, x: Array) -> Forces:
+        """Internal forces of the elements at x, without those of the far field."""
+        return self._state(x).elements
 
-        Results of the last two states are cached: an accepted trial is evaluated again, and `predict` returns
-        to the second-last trial if the last is no better.
-        """
-        for state, known in self._known:
-            if state is x:
-                return known
-        force, energy, min_jacobian = self.body.forces_and_energy(x)
+    def know(self, x: Array, elements: Forces) -> None:
+        """Keep the internal forces of the elements at x, computed elsewhere."""
+        whole = elements
         if self.far is not None:
-            energy += self.far.add_to(force, x)
-        self._known = [(x, (force, energy, min_jacobian)), *self._known[:1]]
-        return self._known[0][1]
+            force = elements.force.copy()
+            whole = Forces(force, elements.energy + self.far.add_to(force, x), elements.min_jacobian)
+        self._known = [_Known(x, elements, whole), *self._known[:1]]
+
+    def _forces_at(self, x: Array) -> Forces:
+        return self._state(x).whole
+
+    def _state(self, x: Array) -> _Known:
+        """Forces at x. Those of the last two states are kept.
+
+        An accepted trial is evaluated again, and `predict` returns to the second-last trial if the last is no
+        better.
+        """
+        for known in self._known:
+            if known.x is x:
+                return known
+        self.know(x, Forces(*self.body.forces_and_energy(x)))
+        return self._known[0]
 
     def residual(self, x: Array) -> tuple[Array, float]:
         """Residual at the free nodes (n_free, 3) [N] and the load scale [N]; sets `report`."""
