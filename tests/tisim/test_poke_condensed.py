@@ -17,8 +17,9 @@ from tisim.nonlinear.contact_newton import contact_newton
 from tisim.nonlinear.newton import Outcome
 from tisim.problems.indentation import condensed as condensed_module
 from tisim.problems.indentation.condensed import CondensedBlock
+from tisim.problems.indentation.far_field import Forces
 from tisim.problems.indentation.solve import solve_poke
-from tisim.problems.indentation.system import Forces, PokeSystem
+from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -150,6 +151,21 @@ def test_forces_of_the_last_two_states_are_not_computed_again() -> None:
     fresh = it.residual(trial.copy())[0]  # states are compared by identity
     assert len(computed) == 3
     assert np.array_equal(kept, fresh)
+
+
+def test_forces_of_the_parts_are_those_of_the_whole_block() -> None:
+    it, x = pressed()
+    block = CondensedBlock(it)
+    block._choose(x)
+    split = block._split
+    assert split is not None
+    x = x + 1e-5 * np.random.default_rng(4).standard_normal(x.shape)
+    x[it.discretisation.fixed] = it.discretisation.mesh.nodes[it.discretisation.fixed]
+    found = split.together(x, Forces(*split.near.body.forces_and_energy(x)))
+    force, energy, min_jacobian = it.body.forces_and_energy(x)
+    assert found.force == pytest.approx(force, abs=1e-12 * np.abs(force).max())
+    assert found.energy == pytest.approx(energy, rel=1e-9)
+    assert found.min_jacobian == min_jacobian
 
 
 def test_trying_a_part_leaves_the_state_of_contact_alone() -> None:

@@ -22,8 +22,8 @@ from tisim.linear.direct import Condensation, LinearSolveError
 from tisim.linear.krylov import FactorGMRES
 from tisim.nonlinear.contact_newton import contact_newton, settled
 from tisim.nonlinear.newton import CRUSHED, Outcome
-from tisim.problems.indentation.far_field import Drag, FarField, Part
-from tisim.problems.indentation.system import Forces, PokeSystem
+from tisim.problems.indentation.far_field import Drag, FarField, Forces, Part
+from tisim.problems.indentation.system import PokeSystem
 from tisim.result import Status
 
 Array = NDArray[np.float64]
@@ -158,7 +158,7 @@ class CondensedBlock:
                 left = self._place(split, x, near)
             except LinearSolveError:
                 return Outcome(x, Status.SINGULAR, relative, used)
-            part.know(x, near)
+            part.forces.know(x, near)
             enough = REDUCTION * relative
             goal = enough if relative <= tolerance else max(GOAL * tolerance, enough)
             outcome = contact_newton(
@@ -172,8 +172,8 @@ class CondensedBlock:
                 rounds = 0
             else:
                 return Outcome(x, outcome.status, relative, used)
-            moved, near = self._follow(split, x, outcome.x, left), part.elements_at(outcome.x)
-            system.know(moved, split.together(moved, near))
+            moved, near = self._follow(split, x, outcome.x, left), part.forces.of_elements(outcome.x)
+            system.forces.know(moved, split.together(moved, near))
             found, share = self._sound(x, moved)
             if found is None:
                 return Outcome(x, Status.INVERTED, relative, used)

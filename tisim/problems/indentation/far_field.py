@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,6 +90,53 @@ class FarField:
         """Add the stiffness times v to out, both of shape (3 n_free,) over the near tissue."""
         product = self._stiffness @ v.reshape(-1, 3)[self.rows].astype(np.float32).ravel()
         out.reshape(-1, 3)[self.rows] += product.reshape(-1, 3)
+
+
+class Forces(NamedTuple):
+    """Internal forces (n, 3) [N], energy [J] and smallest det F at some positions."""
+
+    force: Array
+    energy: float
+    min_jacobian: float
+
+
+class ElasticForces:
+    """Internal forces of a body's elements and of the far tissue; those of the last two states are kept.
+
+    An accepted trial is evaluated again, and a search returns to the second-last trial if the last is no
+    better. States are compared by identity.
+    """
+
+    def __init__(self, body: DiscretisedBody, far: FarField | None = None) -> None:
+        self._body, self._far = body, far
+        self._known: list[tuple[Array, Forces, Forces]] = []
+
+    def forget(self) -> None:
+        """Forget the forces known: the material's history or the elements' weights have changed."""
+        self._known = []
+
+    def know(self, x: Array, elements: Forces) -> None:
+        """Keep the forces of the elements at x (n, 3), computed elsewhere."""
+        whole = elements
+        if self._far is not None:
+            force = elements.force.copy()
+            whole = Forces(force, elements.energy + self._far.add_to(force, x), elements.min_jacobian)
+        self._known = [(x, elements, whole), *self._known[:1]]
+
+    def at(self, x: Array) -> Forces:
+        """Forces at x (n, 3), with those of the far tissue."""
+        return self._state(x)[2]
+
+    def of_elements(self, x: Array) -> Forces:
+        """Forces at x (n, 3) of the elements alone."""
+        return self._state(x)[1]
+
+    def _state(self, x: Array) -> tuple[Array, Forces, Forces]:
+        for known in self._known:
+            if known[0] is x:
+                return known
+        self.know(x, Forces(*self._body.forces_and_energy(x)))
+        return self._known[0]
 
 
 def _with_all_pairs(pattern: Pattern, rows: Ints) -> tuple[Pattern, Ints, Ints]:

@@ -16,7 +16,7 @@ from tisim.kernels.contact import contact_kernels, pack_rod
 from tisim.linear.blocks import FullMatrix
 from tisim.linear.krylov import FactorGMRES
 from tisim.mesh.indentation import sliding
-from tisim.problems.indentation.far_field import Drag, FarField, Part
+from tisim.problems.indentation.far_field import Drag, ElasticForces, FarField, Part
 from tisim.problems.indentation.first_touch import FirstTouch, near_facets
 from tisim.problems.indentation.turning import axis_at, rotation
 from tisim.scene import Poke
@@ -68,22 +68,6 @@ class Remembered(NamedTuple):
     parts: tuple[Array, Array] | None
 
 
-class Forces(NamedTuple):
-    """Internal forces (n, 3) [N], energy [J] and smallest det F at some positions."""
-
-    force: Array
-    energy: float
-    min_jacobian: float
-
-
-class _Known(NamedTuple):
-    """Forces at x of the elements alone, and with the far field."""
-
-    x: Array
-    elements: Forces
-    whole: Forces
-
-
 class PokeSystem:
     """The block under a rod at one pose (see `tisim.nonlinear.contact_newton`).
 
@@ -93,6 +77,7 @@ class PokeSystem:
     depth : depth of the rod [m].
     facets : facets of the top that the rod can touch, shape (f, a).
     rounding : edge radius of the rod, at most ROUNDEST of its radius [m]; unit of penetrations.
+    forces : internal forces of the elements and of the far tissue.
     far : condensed far tissue, if the body is the near part of a block; else None.
     drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
     finer : True once the facets have more contact points (`FINER_FROM`).
@@ -135,7 +120,7 @@ class PokeSystem:
         self.drag: Drag | None = None
         self.linearisations = 0
         self.min_jacobian = 1.0
-        self._known: list[_Known] = []
+        self.forces = ElasticForces(self.body)
         self.previous = mesh.nodes.copy()
         self.depth = self.previous_depth = 0.0
         self._pose(0.0)
@@ -213,7 +198,7 @@ class PokeSystem:
     def begin(self, dt: float) -> None:
         """Begin a step of length dt [s] from the last accepted state."""
         self.body.begin(dt)
-        self._known = []
+        self.forces.forget()
 
     def accept(self, x: Array, *, follow: bool = True) -> None:
         """Accept x as converged state: update the history of friction, material and distorted elements.
@@ -223,7 +208,7 @@ class PokeSystem:
         """
         if self.body.remembers:
             self.body.accept(x)
-            self._known = []
+            self.forces.forget()
         self._memory = self._slip.copy()
         if not self.finer and self.overlap(x) > FINER_FROM * self.rounding:
             self._add_points()
@@ -238,7 +223,7 @@ class PokeSystem:
         self.previous_axis, self._previous_start = self.axis, self.start
         if self._parts is not None:
             self._parts.update(x)
-            self._known = []
+            self.forces.forget()
 
     def remembered(self) -> Remembered:
         """Data of the last accepted state, for `recall`."""
@@ -266,7 +251,7 @@ class PokeSystem:
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
             self._parts.restore(earlier.parts)
-        self._known = []
+        self.forces.forget()
 
     def restricted(self, part: Part, far: FarField) -> PokeSystem:
         """This system at its depth, restricted to some elements, with `far` in place of the others.
@@ -277,12 +262,12 @@ class PokeSystem:
         it.discretisation, it.body, it.linear = part.body.discretisation, part.body, part.linear
         it.full, it._slot, it.far = part.full, part.slot, far
         it._pressure, it._slip, it._skew = self._pressure.copy(), self._slip.copy(), self._skew.copy()
-        it._known, it.report = [], np.zeros(6)
+        it.forces, it.report = ElasticForces(part.body, far), np.zeros(6)
         return it
 
     def potential(self, x: Array) -> tuple[float, float]:
         """Potential [J] at fixed pressures in the friction, and smallest det F."""
-        _, energy, min_jacobian = self._forces_at(x)
+        _, energy, min_jacobian = self.forces.at(x)
         out = np.empty(2)
         self._energy(
             x, self.previous, self.facets, self._shape, self._area, self._rod, self._law,
@@ -304,36 +289,9 @@ class PokeSystem:
         self._measure(x, self.facets, shape, self._rod, distance)
         return max(-float(distance.min()), 0.0)
 
-    def elements_at(self, x: Array) -> Forces:
-        """Internal forces of the elements at x, without those of the far field."""
-        return self._state(x).elements
-
-    def know(self, x: Array, elements: Forces) -> None:
-        """Keep the internal forces of the elements at x, computed elsewhere."""
-        whole = elements
-        if self.far is not None:
-            force = elements.force.copy()
-            whole = Forces(force, elements.energy + self.far.add_to(force, x), elements.min_jacobian)
-        self._known = [_Known(x, elements, whole), *self._known[:1]]
-
-    def _forces_at(self, x: Array) -> Forces:
-        return self._state(x).whole
-
-    def _state(self, x: Array) -> _Known:
-        """Forces at x. Those of the last two states are kept.
-
-        An accepted trial is evaluated again, and `predict` returns to the second-last trial if the last is no
-        better.
-        """
-        for known in self._known:
-            if known.x is x:
-                return known
-        self.know(x, Forces(*self.body.forces_and_energy(x)))
-        return self._known[0]
-
     def residual(self, x: Array) -> tuple[Array, float]:
         """Residual at the free nodes (n_free, 3) [N] and the load scale [N]; sets `report`."""
-        force, _, self.min_jacobian = self._forces_at(x)
+        force, _, self.min_jacobian = self.forces.at(x)
         none = np.full_like(self._slot, -1)
         return self._with_contact(x, force, none, np.zeros((1, 3, 3)))
 
@@ -388,7 +346,7 @@ class PokeSystem:
 
     def residual_norm(self, x: Array) -> float:
         """Norm of the residual at a trial x [N]; leaves `report` and the contact's data unchanged."""
-        total = self._forces_at(x)[0].copy()
+        total = self.forces.at(x).force.copy()
         report, pressure = np.zeros(6), np.zeros_like(self._pressure)
         slip, skew = np.empty_like(self._slip), np.empty_like(self._skew)
         none = np.full_like(self._slot, -1)
