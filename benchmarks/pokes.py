@@ -43,7 +43,7 @@ PARTS = {
     "factor": ("linear/pardiso.py", "factorise"),
     "solves": ("linear/pardiso.py", "solve"),
     "Krylov": ("linear/krylov.py", "_gmres"),
-    "search": ("indentation/system.py", "_forces_at"),
+    "search": ("discretisation/body.py", "forces_and_energy"),
 }
 
 
