@@ -6,8 +6,9 @@
 Set OMP_NUM_THREADS, MKL_NUM_THREADS and OPENBLAS_NUM_THREADS to 1.
 
 Disc of radius 50 mm and height 32 mm, base fixed, side free, mu = 30 kPa; rod of 2.5 mm radius, flat with an
-edge radius of 1 mm, or a hemisphere. Each case at levels 1 and 2 with a contact stiffness of 6e9 Pa/m, and at
-level 1 with 1e10: `poke.estimate` says what they come to for a rigid contact, and the error of that.
+edge radius of 1 mm, or a hemisphere. Each case at levels 1 and 2, each with contact stiffnesses of 6e9, 1e10
+and 2e10 Pa/m, as deep as each goes: through a soft contact the rod's edge sinks in. `poke.estimate` says what
+they come to for a rigid contact, and the error of that.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from benchmarks.references.poke import MU, PENALTY, Case, estimate, poke
 from benchmarks.whole import write_whole
 
 FILE = Path(__file__).with_suffix(".json")
-DEPTHS = (0.001, 0.002, 0.005, 0.010, 0.015, 0.020)
+DEPTHS = (0.001, 0.002, 0.005, 0.010, 0.012, 0.015, 0.017, 0.019, 0.020)
 RATIOS, FRICTIONS = (20.0, 300.0), (0.0, 0.3, 0.6)
 BETWEEN = (0.15, 0.45)  # coefficients of friction of two more cases
-RUNS = ((1, PENALTY), (1, 1e10), (2, PENALTY))  # level, contact stiffness [Pa/m]
+RUNS = tuple(itertools.product((1, 2), (PENALTY, 1e10, 2e10)))  # level, contact stiffness [Pa/m]
 
 
 def cases() -> dict[str, tuple[Case, float]]:

@@ -19,6 +19,7 @@ penetration is in the file. The travel steps are at most 0.25 mm / m.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -119,31 +120,48 @@ def poke(
 def estimate(found: dict[str, Any], depths: tuple[float, ...] = DEPTHS) -> dict[str, Any]:
     """Force for a rigid contact at each friction and depth, from the finest level, and its error [%].
 
-    The penalty's part is c / penalty, c from two penalties on one level at that friction, else stick's.
-    Error: half of that correction plus the difference of the two finest levels; nothing from one level.
+    Of the contacts that this level and a coarser one have, the stiffest counts. Its penalty's part is
+    c / penalty, c from the two stiffest contacts of the coarsest level that has two, else stick's. Error:
+    half of that correction plus the difference of the two finest levels; nothing from one level.
     """
-
-    def slope(name: str, depth: str) -> float | None:
-        for key, values in found.get(name, {}).items():
-            level, _, penalty = key.partition(", penalty ")
-            base = found[name].get(level, {})
-            if penalty and depth in values and depth in base:
-                gain = values[depth]["force"] - base[depth]["force"]
-                return float(gain / (1 / PENALTY - 1 / float(penalty)))
-        return None
-
     out: dict[str, Any] = {}
-    for name, runs in found.items():
-        for depth in (f"{d * 1e3:g}" for d in depths):
-            forces = [runs[k][depth]["force"] for k in sorted(runs) if k.isdigit() and depth in runs[k]]
-            c = slope(name, depth)
-            c = slope("stick", depth) if c is None else c
-            if len(forces) < 2 or c is None:
-                continue
-            force = forces[-1] + c / PENALTY
-            error = abs(c / PENALTY) / 2 + abs(forces[-1] - forces[-2])
-            out.setdefault(name, {})[depth] = {"force": force, "error_percent": round(100 * error / force, 2)}
+    for name, depth in itertools.product(found, (f"{d * 1e3:g}" for d in depths)):
+        forces = _forces(found[name], depth)
+        c = _slope(forces)
+        c = _slope(_forces(found.get("stick", {}), depth)) if c is None else c
+        pairs = [
+            (fine, k, coarse)
+            for fine, k in forces
+            for coarse, other in forces
+            if coarse < fine and k == other
+        ]
+        if not pairs or c is None:
+            continue
+        fine, penalty, coarse = max(pairs)
+        force = forces[fine, penalty] + c / penalty
+        error = abs(c / penalty) / 2 + abs(forces[fine, penalty] - forces[coarse, penalty])
+        out.setdefault(name, {})[depth] = {"force": force, "error_percent": round(100 * error / force, 2)}
     return out
+
+
+def _forces(runs: dict[str, Any], depth: str) -> dict[tuple[int, float], float]:
+    """Force [N] at a depth by level and contact stiffness [Pa/m], where it was reached."""
+    found = {}
+    for key, values in runs.items():
+        level, _, penalty = key.partition(", penalty ")
+        if depth in values:
+            found[int(level), float(penalty or PENALTY)] = float(values[depth]["force"])
+    return found
+
+
+def _slope(forces: dict[tuple[int, float], float]) -> float | None:
+    """Force [N] that a rigid contact adds, times the contact stiffness [Pa/m]; None from one stiffness."""
+    for level in sorted({level for level, _ in forces}):
+        stiffest = sorted(k for at, k in forces if at == level)[-2:]
+        if len(stiffest) == 2:
+            soft, stiff = stiffest
+            return (forces[level, stiff] - forces[level, soft]) / (1 / soft - 1 / stiff)
+    return None
 
 
 def write(found: dict[str, Any]) -> None:
