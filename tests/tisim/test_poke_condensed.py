@@ -168,6 +168,27 @@ def test_forces_of_the_parts_are_those_of_the_whole_block() -> None:
     assert found.min_jacobian == min_jacobian
 
 
+def test_a_round_begins_with_the_near_forces_of_its_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also after a step that is taken in part, whose state no near iteration has seen."""
+    it, x = pressed()
+    block = CondensedBlock(it)
+    place, sound = CondensedBlock._place, CondensedBlock._sound
+    off: list[float] = []
+
+    def placed(self: CondensedBlock, split: Any, x: Array, near: Forces) -> Array:
+        off.append(float(np.abs(near.force - split.near.body.forces_and_energy(x)[0]).max()))
+        return place(self, split, x, near)
+
+    def in_part(self: CondensedBlock, x: Array, moved: Array) -> tuple[Array | None, float]:
+        return (x + 0.5 * (moved - x), 0.5) if len(off) == 1 else sound(self, x, moved)
+
+    monkeypatch.setattr(CondensedBlock, "_place", placed)
+    monkeypatch.setattr(CondensedBlock, "_sound", in_part)
+    assert block.solve(x, **OPTIONS).status is Status.CONVERGED
+    assert len(off) > 2
+    assert max(off) < 1e-12
+
+
 def test_trying_a_part_leaves_the_state_of_contact_alone() -> None:
     it, x = pressed()
     x = CondensedBlock(it).solve(x, **OPTIONS).x
