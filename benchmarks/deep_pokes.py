@@ -1,6 +1,6 @@
 """Force of normal pokes to 20 mm of 32 against references/deep.json.
 
-    python -m benchmarks.deep_pokes                                      # all 26 cases, some 20 core minutes
+    python -m benchmarks.deep_pokes                                      # all 26 cases, some 8 core minutes
     python -m benchmarks.deep_pokes "flat ogden K/mu 20 friction 0.6" --refinement 1.5
 
 The reference is a disc of 50 mm radius under a rigid rod, ours the default block of 100 mm, its contact by a
