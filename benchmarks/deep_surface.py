@@ -1,16 +1,18 @@
-"""Where a poked block's surface is, beside the reference of references/poke.py, by radius at rest.
+"""Where a poked block's surface is, beside the reference of references/surface.json, by radius at rest.
 
-    python -m benchmarks.deep_surface --depths 5 10 15 20              # some 60 core s, of which FElupe 20
-    python -m benchmarks.deep_surface --depths 10 --refinement 1.5
+    python -m benchmarks.deep_surface                           # some 30 core s
+    python -m benchmarks.deep_surface --law ogden --refinement 1.5
 
-Scene of pokes.py at 0 degrees, friction 0.6. Distance [mm] of our surface, at 36 points a facet, from the
-place that the reference's has for the same radius at rest: mean (largest) in rings. Far off, the reference's
-disc of 50 mm radius and our block of 100 mm differ as bodies.
+Flat rod at 0 degrees, friction 0.6, K/mu 20. Distance [mm] of our surface, at 36 points a facet, from the
+place that the reference has for the same radius at rest: mean (largest) in rings; the same of the
+reference's second level from its third, which says what the reference's own elements are worth. Far off,
+the reference's disc of 50 mm radius and our block of 100 mm differ as bodies.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 from itertools import pairwise
 from typing import Any
 
@@ -18,35 +20,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 import tisim
-from benchmarks.pokes import poke
-from benchmarks.references import poke as model
+from benchmarks.deep_pokes import LAWS
+from benchmarks.references.poke import BULK, MU
+from benchmarks.references.surface import FILE, FRICTION
 from tisim.discretisation.quadrature import facet_quadrature
 from tisim.problems.indentation.solve import solve_poke
 
 Array = NDArray[np.float64]
 RINGS = (0.0, 1.5, 3.0, 5.0, 10.0, 25.0, 45.0)  # mm
+FINEST, COARSER = "3", "2"  # levels of the reference
 
 
-def reference(depths: list[float], level: int = 1) -> dict[float, tuple[Array, Array]]:
-    """FElupe's: radii at rest (n,) and displacements (n, 2), outwards and up, at each depth reached [m]."""
-    found: dict[float, tuple[Array, Array]] = {}
-
-    class Watched(model.FlatRod):
-        def accept(self, u: Array, factor: float) -> None:
-            super().accept(u, factor)
-            top = np.flatnonzero(self.rest[:, 0] > model.HEIGHT - 1e-9)
-            top = top[np.argsort(self.rest[top, 1])]
-            for depth in depths:
-                if abs(factor - depth) < 1e-9:
-                    found[depth] = self.rest[top, 1], u[top][:, ::-1].copy()
-
-    model.FlatRod = Watched  # type: ignore[misc]
-    model.poke(0.6, level, case=model.Case(depths=tuple(depths)))
-    return found
-
-
-def ours(result: tisim.Result, frame: int) -> tuple[Array, Array]:
-    """The same of a result."""
+def ours(result: tisim.Result, frame: int) -> Array:
+    """Radius at rest, displacements outwards and up [mm] at many points of the top, shape (n, 3)."""
     facets = result.mesh.facet_sets["top"]
     shape = facet_quadrature(facets.shape[1], 6)[0]
 
@@ -57,30 +43,49 @@ def ours(result: tisim.Result, frame: int) -> tuple[Array, Array]:
     moved = at_points(result.positions[frame] - result.mesh.nodes)
     radius = np.hypot(rest[:, 0], rest[:, 1])
     outwards = (moved[:, :2] * rest[:, :2]).sum(axis=1) / radius
-    return radius, np.stack([outwards, moved[:, 2]], axis=1)
+    return 1e3 * np.column_stack([radius, outwards, moved[:, 2]])
+
+
+def theirs(surface: dict[str, list[float]]) -> Array:
+    """The same of the reference."""
+    return np.column_stack([surface["radius"], surface["outwards"], surface["up"]])
+
+
+def distances(surface: Array, known: Array) -> str:
+    """Mean (largest) distance in each ring."""
+    radius = surface[:, 0]
+    there = np.column_stack([np.interp(radius, known[:, 0], known[:, k]) for k in (1, 2)])
+    off = np.linalg.norm(surface[:, 1:] - there, axis=1)
+    parts = []
+    for low, high in pairwise(RINGS):
+        within = off[(radius >= low) & (radius < high)]
+        parts.append(f"{within.mean():.3f} ({within.max():.3f})")
+    return " | ".join(parts)
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--depths", type=float, nargs="+", default=[5.0, 10.0], help="mm, whole ones")
+    parser.add_argument("--law", choices=sorted(LAWS), default="neo_hookean")
+    parser.add_argument("--depth", type=float, default=20.0, help="mm")
     parser.add_argument("--refinement", type=float, default=1.0)
     args = parser.parse_args()
-    depths = sorted(1e-3 * d for d in args.depths)
-    known: dict[float, Any] = reference(depths)
-    result = solve_poke(poke(0.0, depths[-1], args.refinement))
-    for depth in depths:
-        frame = np.flatnonzero(np.abs(result.load - depth) < 1e-6)
-        if not len(frame) or depth not in known:
-            continue
-        radius, moved = ours(result, int(frame[0]))
-        there = np.stack([np.interp(radius, known[depth][0], known[depth][1][:, k]) for k in (0, 1)], axis=1)
-        off = 1e3 * np.linalg.norm(moved - there, axis=1)
-        parts = []
-        for low, high in pairwise(RINGS):
-            within = off[(radius >= 1e-3 * low) & (radius < 1e-3 * high)]
-            parts.append(f"{low:g}-{high:g}: {within.mean():.3f} ({within.max():.3f})")
-        print(f"{1e3 * depth:4.1f} mm | " + " | ".join(parts), flush=True)
+    levels: dict[str, Any] = json.loads(FILE.read_text())["values"][args.law]
+    poke = tisim.Poke(
+        material=tisim.material_from_moduli(LAWS[args.law], shear_modulus=MU, bulk_modulus=BULK),
+        friction=FRICTION,
+        depth=1e-3 * args.depth,
+        refinement=args.refinement,
+    )
+    result = solve_poke(poke)
+    print("| depth | | " + " | ".join(f"{low:g}-{high:g}" for low, high in pairwise(RINGS)) + " |")
+    for depth, surface in levels[FINEST].items():
+        known = theirs(surface)
+        frame = np.flatnonzero(np.abs(1e3 * result.load - float(depth)) < 1e-3)
+        if len(frame):
+            print(f"| {depth} mm | ours | {distances(ours(result, int(frame[0])), known)} |", flush=True)
+        if depth in levels[COARSER]:
+            print(f"| | level {COARSER} | {distances(theirs(levels[COARSER][depth]), known)} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -81,16 +82,25 @@ def disc(level: int, axis: int = 2) -> fe.Mesh:
 
 
 def poke(
-    friction: float, level: int, penalty: float = PENALTY, case: Case = Case()
+    friction: float,
+    level: int,
+    penalty: float = PENALTY,
+    case: Case = Case(),
+    *,
+    largest_step: float = 2.5e-4,
+    see: Callable[[float, Array, Array], None] | None = None,
 ) -> dict[str, dict[str, float]]:
-    """Force and checks at every depth reached."""
+    """Force and checks at every depth reached; travel steps of at most largest_step / level [m].
+
+    see(depth, radii (n,), displacements (n, 2) outwards and up) is told of the top at every depth [m].
+    """
     mesh = disc(level) if case.tip == "flat" else disc(level, 4)
     field = mixed_fields(fe.RegionBiQuadraticQuad(mesh), axisymmetric=True)
     dof = np.arange(2 * mesh.npoints).reshape(-1, 2)
     base, axis = mesh.points[:, 0] < 1e-9, mesh.points[:, 1] < 1e-9
     fixed = np.unique(np.concatenate([dof[base].ravel(), dof[axis, 1]]))
     top = np.flatnonzero(mesh.points[:, 0] > HEIGHT - 1e-9)
-    top = top[np.argsort(mesh.points[top, 1])]
+    whole_top = top = top[np.argsort(mesh.points[top, 1])]
     top = top[mesh.points[top, 1] < max(0.012, 0.8 * case.depths[-1])]
     top = top[: len(top) - 1 + len(top) % 2]
     edges = np.stack([top[:-2:2], top[2::2], top[1:-1:2]], -1)
@@ -108,11 +118,13 @@ def poke(
         key = f"{depth * 1e3:g}"
         out[key] = {"force": rod.force, "base": reaction}
         out[key] |= {"penetration": rod.deepest, "min_J": float(J.min())}
+        if see is not None:
+            see(depth, mesh.points[whole_top, 1], field[0].values[whole_top][:, ::-1])
         what = f"friction {friction} level {level} penalty {penalty:g} depth {key} mm"
         forces = f"force {rod.force:.4f} N, base {reaction:.4f}, penetration {rod.deepest * 1e6:.1f} um"
         print(f"{what}: {forces}, min J {J.min():.3f}, {model.solves} solves, {clock():.0f} s", flush=True)
 
-    if not model.path(0.0, case.depths, report, 1e-4, 2.5e-4 / level):
+    if not model.path(0.0, case.depths, report, min(1e-4, largest_step), largest_step / level):
         print(f"friction {friction} level {level}: no equilibrium beyond the values above", flush=True)
     return out
 

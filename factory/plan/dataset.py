@@ -31,7 +31,7 @@ from tisim import Inclusion, Material, parts
 from tisim.laws import added
 from tisim.mesh.indentation import LAYOUT
 from tisim.parallel.extensions import digest_of_code, is_own
-from tisim.problems.indentation.kind import ELEMENT, contact_version
+from tisim.problems.indentation.kind import CONTACT, ELEMENT
 
 log = logging.getLogger(__name__)
 
@@ -165,7 +165,7 @@ def make_plan(
         # labels depend on the element type, the mesh and the contact
         "element": ELEMENT,
         "mesh_layout": LAYOUT,
-        "contact": contact_version(recipe.friction),
+        "contact": CONTACT,
         # absent if each poke has its own solve, so that such stores stay as they were
         **({"one_solve": True} if any(poke.derived for poke in solved) else {}),
         **_added_code(laws, inclusions),

@@ -70,12 +70,6 @@ def test_another_law_another_version_other_meshes_and_another_contact_are_refuse
                 standin_build(plan, target)
 
 
-def test_a_plan_states_the_contact_of_its_friction(plan: Plan) -> None:
-    assert plan.recipe.friction == 0.6
-    slides = make_plan(plan.recipe.model_copy(update={"friction": 0.3}), "ogden")
-    assert (plan.identity["contact"], slides.identity["contact"]) == (2, 3)
-
-
 def test_overwrite_keeps_the_old_store_until_the_new_one_is_whole(
     plan: Plan, other: Plan, standin_build: Builder, tmp_path: Path
 ) -> None:

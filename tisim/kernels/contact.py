@@ -6,11 +6,12 @@ distance from the axis and s the height ahead of the tip, is that of a rounded b
 q = (r - (R - e), s + e), d = |max(q, 0)| + min(max(q), 0) - e.
 
 Contact is integrated at many points per facet (with nodes alone, the edge passes through the surface).
-Energy of a point of rest area A:   A [kn/2 o^2 (1 + (o/h)^4/3) + huber(g)],  with the overlap
-o = max(-d, 0), g the elastic part of the slip and huber(g) = kt/2 g^2 up to the Coulomb limit mu p,
-mu p g - (mu p)^2/(2 kt) beyond it. This is a return mapping whose history variable is g at the last converged
-step, so that a sticking point does not creep from step to step. The pressure p = kn o (1 + (o/h)^4) is almost
-linear below the overlap h and grows with the fifth power of o above it, which bounds the penetration.
+Energy of a point of area A: A [kn/2 o^2 (1 + (o/h)^4/3) + mu p w(g)], with the overlap o = max(-d, 0), g
+the elastic part of the slip and w(g) = g^2/(2 s) up to the elastic slip s, g - s/2 beyond it. So friction
+grows linearly with g to the Coulomb limit mu p, which it reaches at the same slip s whatever the pressure
+is. This is a return mapping whose history variable is g at the last converged step, so that a sticking
+point does not creep from step to step. The pressure p = kn o (1 + (o/h)^4) is almost linear below the
+overlap h and grows with the fifth power of o above it, which bounds the penetration.
 p is fixed during a line search and updated at every linearisation: the residual is Coulomb's law without lag.
 The dependence of mu p and of the tangent plane on x makes the tangent unsymmetric. The unsymmetric part, a
 3 x 3 matrix per point, is stored separately for the linear solver (without it convergence is slow where
@@ -18,7 +19,7 @@ points slip and where they pass the rounded edge).
 A point that first touches in this step slips only for the fraction of the step in which it touches, estimated
 from the step's start value.
 
-The kernels read the contact's constants from `law`: kn [Pa/m], kt [Pa/m], mu, h [m].
+The kernels read the contact's constants from `law`: kn [Pa/m], s [m], mu, h [m].
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
@@ -153,10 +154,10 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                         shift = rod_shift(y, rod)
                         g0 = total_slip(y, sample(z, conn, shape, f, q), shift, memory, part, f, q)
                         g = (g0 - g0.dot(n) * n).norm()
-                        if law[1] * g <= limit:
-                            total += area[f, q] * 0.5 * law[1] * g * g
-                        else:
-                            total += area[f, q] * (limit * g - 0.5 * limit * limit / law[1])
+                        part_of_limit = g - 0.5 * law[1]
+                        if g <= law[1]:
+                            part_of_limit = 0.5 * g * g / law[1]
+                        total += area[f, q] * limit * part_of_limit
             out[0] = total
             out[1] = least
 
@@ -209,19 +210,17 @@ def contact_kernels() -> tuple[Kernel, Kernel, Kernel]:
                                 - n.outer_product(N @ g0)
                                 - g0.dot(n) * N
                             )  # dg/dy
-                            D = law[1] * G
-                            symmetric = part[f, q] * law[1] * T
-                            pull = law[1] * g
-                            if law[1] * size > limit:
-                                u = g / size
-                                across = limit / size * (ti.Matrix.identity(f64, 3) - u.outer_product(u))
-                                pull = limit * u
-                                D = across @ G - law[2] * k * u.outer_product(n)
-                                symmetric = part[f, q] * limit / size * (T - u.outer_product(u))
-                            grad += pull
+                            stiffness = limit / ti.max(size, law[1])
+                            u = g / ti.max(size, law[1])  # part of the limit
+                            along = ti.Matrix.zero(f64, 3, 3)
+                            if size > law[1]:
+                                along = u.outer_product(u)
+                            D = stiffness * (G - along @ G) - law[2] * k * u.outer_product(n)
+                            symmetric = part[f, q] * stiffness * (T - along)
+                            grad += limit * u
                             H += symmetric
                             for i in ti.static(range(3)):
-                                slip[f, q, i] = pull[i] / law[1]
+                                slip[f, q, i] = law[1] * u[i]
                                 for j in ti.static(range(3)):
                                     skew[f, q, 3 * i + j] = area[f, q] * (D[i, j] - symmetric[i, j])
                             out[5] = 1.0

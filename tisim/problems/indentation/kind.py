@@ -20,7 +20,7 @@ from tisim._checks import (
 from tisim.bodies import Block, Inclusion, Rod, Vector
 from tisim.course import Course
 from tisim.mesh import ElementKind
-from tisim.mesh.indentation import check_indentation, sliding
+from tisim.mesh.indentation import check_indentation
 from tisim.parts import FIELDS
 from tisim.problems._checks import check_course, check_mesh, check_static
 from tisim.problems._registry import OnStep, SceneKind
@@ -36,18 +36,9 @@ Array = NDArray[np.float64]
 STEEPEST = 45.0  # largest angle of the rod's direction from the normal [degrees]
 SECONDS = 10.0  # cost of a scene with the default mesh [core-s]
 ELEMENT: ElementKind = "hex20"  # the element type "default"
+# Version of the contact, raised when its pressure, its friction or its points change; a dataset has one only.
+CONTACT = 4
 SAME = 1e-9  # difference below which two depths are equal [m]
-
-
-def contact_version(friction: float) -> int:
-    """Version of the contact, raised when its pressure law or its points change.
-
-    A dataset has one version only. Version 3 is stiffer than 2 where the surface slides (`sliding`), and the
-    rings of elements beside the rod are closer to it; without friction, and where the surface sticks, nothing
-    has changed, so that datasets of version 2 go on. What applies only once the surface is deep in the rod
-    (`FOLLOWS_FROM` and `FINER_FROM` of `system.py`) has no version: frames before it are the same.
-    """
-    return 3 if sliding(friction) > 0.0 else 2
 
 
 def check(scene: Poke) -> None:

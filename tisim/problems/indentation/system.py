@@ -32,7 +32,10 @@ STIFFER_SLIDING = 2.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
-TANGENT_STIFFNESS = 50.0
+# Slip at which friction reaches its limit, as a fraction of the edge radius. A spring of one stiffness for
+# all pressures gives way too far under the tractions of a law that stiffens, or holds a soft tissue's surface
+# at the shaft too low (studies/depth).
+ELASTIC_SLIP = 0.05
 # Upper limit of the edge radius in the contact stiffness and in limits of the penetration, as a fraction of
 # the rod's radius. With its whole radius a hemisphere would penetrate so far that its force is 1.3 % low,
 # whatever the mesh.
@@ -46,11 +49,10 @@ WATCHED_PER_SIDE = 7
 # Penetration of an accepted state, as a fraction of the edge radius, from which facets have FINER more points
 # of contact per side (and WATCHED_FINER are measured): over crushed tissue the edge passes between fewer.
 FINER_FROM, FINER, WATCHED_FINER = 0.22, 2, 10
-# Penetration of an accepted state, as a fraction of the edge radius, from which the contact acts on the areas
-# of the deformed surface where these are larger than at rest, up to LARGEST_AREA times. At 30 of 32 mm the
-# surface over the edge is stretched to 18 times its area: per area at rest, its contact would be as many
+# Largest area of the deformed surface on which the contact acts, in units of that at rest. At 30 of 32 mm
+# the surface over the edge is stretched to 18 times its area: per area at rest, its contact would be as many
 # times softer, and the edge would pass through it.
-FOLLOWS_FROM, LARGEST_AREA = 0.18, 30.0
+LARGEST_AREA = 30.0
 
 
 class Remembered(NamedTuple):
@@ -62,7 +64,6 @@ class Remembered(NamedTuple):
     slip: Array
     gap: Array
     finer: bool
-    follows: bool
     area: Array
     history: History | None
     parts: tuple[Array, Array] | None
@@ -81,7 +82,6 @@ class PokeSystem:
     far : condensed far tissue, if the body is the near part of a block; else None.
     drag : resistance to motion, added to energy, forces and tangent; None for equilibrium.
     finer : True once the facets have more contact points (`FINER_FROM`).
-    follows : True once the contact's areas are those of the deformed surface (`FOLLOWS_FROM`).
     report : results of the last residual or linearisation, shape (6,): force on the rod (3) [N], smallest
         distance [m], area in contact [m2], 1 if friction acts.
     """
@@ -108,12 +108,9 @@ class PokeSystem:
         g = self.body.moduli.shear_modulus
         edge = self.rounding = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
-        self._law = np.array(
-            [normal * g / edge, TANGENT_STIFFNESS * g / edge, scene.friction, HARDENS_AT * edge]
-        )
+        self._law = np.array([normal * g / edge, ELASTIC_SLIP * edge, scene.friction, HARDENS_AT * edge])
         self._measure, self._energy, self._assemble = contact_kernels()
         self._place_points(finer=False)
-        self.follows = False
         self.linear = FactorGMRES(discretisation.pattern)
         self.full = FullMatrix(discretisation.pattern, self.facets)
         self.far: FarField | None = None
@@ -161,8 +158,7 @@ class PokeSystem:
         # the nearer two places on a facet are, the less their shape functions differ
         apart = np.linalg.norm(self._shape[:, None] - shape, axis=2)
         self._memory = np.ascontiguousarray(slip[:, apart.argmin(axis=1)])
-        if self.follows:
-            self._area = self._areas(self.previous)
+        self._area = self._areas(self.previous)
 
     def _areas(self, x: Array) -> Array:
         """Areas (f, q) [m2] of the contact points on the surface at x (n, 3), at least those at rest."""
@@ -203,8 +199,8 @@ class PokeSystem:
     def accept(self, x: Array, *, follow: bool = True) -> None:
         """Accept x as converged state: update the history of friction, material and distorted elements.
 
-        With `follow`, the contact's areas follow the surface once it is deep enough in the rod: the forces at
-        x change, and the next step finds their equilibrium.
+        With `follow`, the contact's areas become those of the surface at x: the forces at x change, and the
+        next step finds their equilibrium.
         """
         if self.body.remembers:
             self.body.accept(x)
@@ -212,12 +208,8 @@ class PokeSystem:
         self._memory = self._slip.copy()
         if not self.finer and self.overlap(x) > FINER_FROM * self.rounding:
             self._add_points()
-        if self.drag is None and not self.follows:  # a drag may hold the surface deep in the rod
-            self.follows = self.overlap(x) > FOLLOWS_FROM * self.rounding
-        if follow and self.follows:
-            area = self._areas(x)
-            self._memory *= (self._area / area)[:, :, None]  # friction keeps its forces
-            self._area = area
+        if follow:
+            self._area = self._areas(x)
         self._measure(x, self.facets, self._shape, self._rod, self._gap)
         self.previous, self.previous_depth = x, self.depth
         self.previous_axis, self._previous_start = self.axis, self.start
@@ -234,7 +226,6 @@ class PokeSystem:
             slip=self._memory,
             gap=self._gap.copy(),
             finer=self.finer,
-            follows=self.follows,
             area=self._area,
             history=deepcopy(self.body.history),
             parts=None if self._parts is None else self._parts.state(),
@@ -246,8 +237,7 @@ class PokeSystem:
         self.previous_axis, self._previous_start = earlier.pose
         if self.finer != earlier.finer:
             self._place_points(finer=earlier.finer)
-        self.follows, self._area = earlier.follows, earlier.area
-        self._memory, self._gap = earlier.slip, earlier.gap
+        self._memory, self._gap, self._area = earlier.slip, earlier.gap, earlier.area
         self.body.take(earlier.history)
         if self._parts is not None and earlier.parts is not None:
             self._parts.restore(earlier.parts)
