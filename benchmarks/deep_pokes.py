@@ -4,7 +4,8 @@
     python -m benchmarks.deep_pokes "flat ogden K/mu 20 friction 0.6" --refinement 1.5
 
 The reference is a disc of 50 mm radius under a rigid rod, ours the default block of 100 mm, its contact by a
-penalty (0.5 to 1 % softer: studies/depth). One line a case; what the reference does not have is left out.
+penalty (0.5 to 1 % softer: studies/depth). One line a case, forces between two frames interpolated;
+what the reference does not have is left out.
 """
 
 from __future__ import annotations
@@ -48,10 +49,10 @@ def main() -> None:
         force = np.linalg.norm(result.rod_force, axis=1)
         parts = []
         for depth in DEPTHS:
-            at = np.flatnonzero(np.abs(result.load - depth) < 1e-6)
             known_there = values.get(name, {}).get(f"{depth * 1e3:g}")
-            if len(at) and known_there is not None:
-                wrong = 100.0 * (force[at[0]] / known_there["force"] - 1.0)
+            if depth < result.load[-1] + 1e-6 and known_there is not None:
+                # a frame that met the tolerance of a step alone stands a little deeper
+                wrong = 100.0 * (np.interp(depth, result.load, force) / known_there["force"] - 1.0)
                 parts.append(f"{wrong:+.1f} (±{known_there['error_percent']:.1f})")
             else:
                 parts.append("")

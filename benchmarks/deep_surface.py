@@ -4,8 +4,8 @@
     python -m benchmarks.deep_surface --law ogden --refinement 1.5
 
 Flat rod at 0 degrees, friction 0.6, K/mu 20. Distance [mm] of our surface, at 36 points a facet, from the
-place that the reference has for the same radius at rest: mean (largest) in rings; the same of the
-reference's second level from its third, which says what the reference's own elements are worth. Far off,
+place that the reference has for the same radius at rest: mean over the area (largest) in rings; the same of
+the reference's second level from its third, which says what the reference's own elements are worth. Far off,
 the reference's disc of 50 mm radius and our block of 100 mm differ as bodies.
 """
 
@@ -23,7 +23,7 @@ import tisim
 from benchmarks.deep_pokes import LAWS
 from benchmarks.references.poke import BULK, MU
 from benchmarks.references.surface import FILE, FRICTION
-from tisim.discretisation.quadrature import facet_quadrature
+from tisim.discretisation.quadrature import facet_areas
 from tisim.problems.indentation.solve import solve_poke
 
 Array = NDArray[np.float64]
@@ -32,9 +32,9 @@ FINEST, COARSER = "3", "2"  # levels of the reference
 
 
 def ours(result: tisim.Result, frame: int) -> Array:
-    """Radius at rest, displacements outwards and up [mm] at many points of the top, shape (n, 3)."""
+    """Radius at rest, displacements outwards and up [mm] and area [m2] of many points of the top, (n, 4)."""
     facets = result.mesh.facet_sets["top"]
-    shape = facet_quadrature(facets.shape[1], 6)[0]
+    shape, area = facet_areas(result.mesh.nodes, facets, 6)
 
     def at_points(values: Array) -> Array:
         return np.einsum("qa,fai->fqi", shape, values[facets]).reshape(-1, 3)
@@ -43,23 +43,24 @@ def ours(result: tisim.Result, frame: int) -> Array:
     moved = at_points(result.positions[frame] - result.mesh.nodes)
     radius = np.hypot(rest[:, 0], rest[:, 1])
     outwards = (moved[:, :2] * rest[:, :2]).sum(axis=1) / radius
-    return 1e3 * np.column_stack([radius, outwards, moved[:, 2]])
+    return np.column_stack([1e3 * radius, 1e3 * outwards, 1e3 * moved[:, 2], area.ravel()])
 
 
 def theirs(surface: dict[str, list[float]]) -> Array:
-    """The same of the reference."""
-    return np.column_stack([surface["radius"], surface["outwards"], surface["up"]])
+    """The same of the reference, areas in another unit."""
+    radius = np.array(surface["radius"])
+    return np.column_stack([radius, surface["outwards"], surface["up"], radius * np.gradient(radius)])
 
 
 def distances(surface: Array, known: Array) -> str:
-    """Mean (largest) distance in each ring."""
-    radius = surface[:, 0]
+    """Mean (largest) distance in each ring, and within the outermost."""
+    radius, area = surface[:, 0], surface[:, 3]
     there = np.column_stack([np.interp(radius, known[:, 0], known[:, k]) for k in (1, 2)])
-    off = np.linalg.norm(surface[:, 1:] - there, axis=1)
+    off = np.linalg.norm(surface[:, 1:3] - there, axis=1)
     parts = []
-    for low, high in pairwise(RINGS):
-        within = off[(radius >= low) & (radius < high)]
-        parts.append(f"{within.mean():.3f} ({within.max():.3f})")
+    for low, high in (*pairwise(RINGS), (RINGS[0], RINGS[-1])):
+        within = (radius >= low) & (radius < high)
+        parts.append(f"{np.average(off[within], weights=area[within]):.3f} ({off[within].max():.3f})")
     return " | ".join(parts)
 
 
@@ -78,7 +79,7 @@ def main() -> None:
         refinement=args.refinement,
     )
     result = solve_poke(poke)
-    print("| depth | | " + " | ".join(f"{low:g}-{high:g}" for low, high in pairwise(RINGS)) + " |")
+    print("| depth | | " + " | ".join(f"{low:g}-{high:g}" for low, high in pairwise(RINGS)) + " | all |")
     for depth, surface in levels[FINEST].items():
         known = theirs(surface)
         frame = np.flatnonzero(np.abs(1e3 * result.load - float(depth)) < 1e-3)
