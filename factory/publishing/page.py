@@ -139,6 +139,11 @@ def _simulated(facts: Facts) -> Iterator[str]:
     course = protocol.get("course")
     motion = "along a course over time (quasi-static)" if course else "in quasi-static steps, without time"
     versions = ", ".join(f"{name} {number}" for name, number in facts.identity["versions"].items())
+    # of stores that were built before these were recorded nothing is known
+    parts = [
+        (name, facts.identity.get(key)) for name, key in (("mesh", "mesh_layout"), ("contact", "contact"))
+    ]
+    versions += "".join(f", {name} {number}" for name, number in parts if number is not None)
     block = f"Block: {sides_text(_blocks(facts))} mm"
     if _own_blocks(facts):
         block += ", one for each shape"

@@ -125,6 +125,7 @@ def test_what_the_page_says_is_in_the_store(page: str, quick_store: Path) -> Non
         f"{own} solves took {cores:.1f} core-seconds",
         "friction coefficient of 0.6",
         f"zarr {attributes['identity']['versions']['zarr']}",
+        f", mesh {attributes['identity']['mesh_layout']}, contact {attributes['identity']['contact']}.",
         "Reasons why pokes ended: not-converged 12.",
         "| checksums | 0 |",
         f"| completed | {day} |",
