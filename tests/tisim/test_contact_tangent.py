@@ -119,6 +119,43 @@ def test_force_is_the_derivative_of_the_energy_without_friction() -> None:
     assert float(np.vdot(r, v)) == pytest.approx(numeric, rel=1e-5)
 
 
+@pytest.mark.parametrize("overlap", [4e-5, 1.5e-4], ids=["linear", "hardened"])
+@pytest.mark.parametrize("part", [0.3, 0.99, 3.0])
+def test_friction_grows_to_its_limit_over_one_slip_at_any_pressure(part: float, overlap: float) -> None:
+    """A point under the flat that moves across it, against mu p min(g / s, 1) and the energy's derivative."""
+    _, energy, assemble = contact_kernels()
+    across = np.cross(AXIS, [0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    stiffness, slip, friction, hardens, area = 6e9, 5e-5, 0.6, 1e-4, 2e-7
+    pressure = stiffness * overlap * (1.0 + (overlap / hardens) ** 4)
+    before = -overlap * AXIS[None]
+    rod = pack_rod(np.zeros(3), AXIS, 2.5e-3, 1e-3, np.zeros(3))
+    law = np.array([stiffness, slip, friction, hardens])
+    conn, shape, weights = np.zeros((1, 4), dtype=np.int32), np.full((1, 4), 0.25), np.full((1, 1), area)
+    memory, touches, held = np.zeros((1, 1, 3)), np.ones((1, 1)), np.zeros((1, 1))
+    slips, skew, slot = np.zeros((1, 1, 3)), np.zeros((1, 1, 9)), np.full((1, 4, 4), -1, dtype=np.int32)
+    force = np.zeros((1, 3))
+
+    def energy_at(distance: float) -> float:
+        out = np.zeros(2)
+        energy(before + distance * across, before, conn, shape, weights, rod, law, memory, touches, held, out)
+        return float(out[0])
+
+    moved = before + part * slip * across
+    assemble(
+        moved, before, conn, shape, weights, rod, law, memory, touches, held, slips, skew, slot, force,
+        np.zeros((1, 3, 3)), np.zeros(6),
+    )  # fmt: skip
+    wanted = friction * pressure * min(part, 1.0) * area
+    assert held[0, 0] == pytest.approx(pressure)
+    assert force[0] @ across == pytest.approx(wanted)
+    assert force[0] @ AXIS == pytest.approx(-pressure * area)
+    assert slips[0, 0] @ across == pytest.approx(min(part, 1.0) * slip)
+    h = 1e-9
+    derivative = (energy_at(part * slip + h) - energy_at(part * slip - h)) / (2 * h)
+    assert derivative == pytest.approx(wanted, rel=1e-5)
+
+
 def test_coulomb_bound_and_no_tension() -> None:
     it, x = system(0.05)
     residual(it, x)
