@@ -126,6 +126,9 @@ def test_areas_that_follow_keep_the_forces(mesh: tisim.Mesh) -> None:
         system.accept(system.previous, follow=follow)
         grown = system._area / before
         assert bool(grown.max() > 1.05) is follow  # where the edge stretches the surface
+        assert np.array_equal(
+            system._memory, system._slip
+        )  # at the same slip a larger area bears more friction
         system.accept(step_to(system, block, 0.0003), follow=False)
         forces.append(system.report[:3].copy())
     assert forces[1] == pytest.approx(forces[0], abs=0.01 * float(np.linalg.norm(forces[0])))
