@@ -32,10 +32,11 @@ STIFFER_SLIDING = 2.0
 # Penetration, as a fraction of the edge radius, at which the pressure is twice that of a linear penalty. With
 # a linear penalty the surface of crushed tissue slips past the rod's edge (studies/depth).
 HARDENS_AT = 0.1
-# Slip at which friction reaches its limit, as a fraction of the edge radius. A spring of one stiffness for
-# all pressures gives way too far under the tractions of a law that stiffens, or holds a soft tissue's surface
-# at the shaft too low (studies/depth).
-ELASTIC_SLIP = 0.05
+# Slip at which friction reaches its limit, in units of the edge radius and the coefficient of friction: what
+# holds a sticking point is in proportion to the pressure alone. A spring of one stiffness for all pressures
+# gives way too far under the tractions of a law that stiffens, or holds a soft tissue's surface at the shaft
+# too low (studies/depth).
+ELASTIC_SLIP = 1.0 / 12.0
 # Upper limit of the edge radius in the contact stiffness and in limits of the penetration, as a fraction of
 # the rod's radius. With its whole radius a hemisphere would penetrate so far that its force is 1.3 % low,
 # whatever the mesh.
@@ -108,7 +109,8 @@ class PokeSystem:
         g = self.body.moduli.shear_modulus
         edge = self.rounding = min(self.edge, ROUNDEST * rod.radius)
         normal = NORMAL_STIFFNESS * (1.0 + STIFFER_SLIDING * sliding(scene.friction))
-        self._law = np.array([normal * g / edge, ELASTIC_SLIP * edge, scene.friction, HARDENS_AT * edge])
+        slip = ELASTIC_SLIP * scene.friction * edge
+        self._law = np.array([normal * g / edge, slip, scene.friction, HARDENS_AT * edge])
         self._measure, self._energy, self._assemble = contact_kernels()
         self._place_points(finer=False)
         self.linear = FactorGMRES(discretisation.pattern)
