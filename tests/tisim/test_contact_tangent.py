@@ -122,7 +122,7 @@ def test_force_is_the_derivative_of_the_energy_without_friction() -> None:
 @pytest.mark.parametrize("overlap", [4e-5, 1.5e-4], ids=["linear", "hardened"])
 @pytest.mark.parametrize("part", [0.3, 0.99, 3.0])
 def test_friction_grows_to_its_limit_over_one_slip_at_any_pressure(part: float, overlap: float) -> None:
-    """A point under the flat that moves across it, against mu p min(g / s, 1) and the energy's derivative."""
+    """A point under the flat that moves across it, against mu p min(g / l, 1) and the energy's derivative."""
     _, energy, assemble = contact_kernels()
     across = np.cross(AXIS, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)

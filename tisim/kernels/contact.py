@@ -7,8 +7,8 @@ q = (r - (R - e), s + e), d = |max(q, 0)| + min(max(q), 0) - e.
 
 Contact is integrated at many points per facet (with nodes alone, the edge passes through the surface).
 Energy of a point of area A: A [kn/2 o^2 (1 + (o/h)^4/3) + mu p w(g)], with the overlap o = max(-d, 0), g
-the elastic part of the slip and w(g) = g^2/(2 s) up to the elastic slip s, g - s/2 beyond it. So friction
-grows linearly with g to the Coulomb limit mu p, which it reaches at the same slip s whatever the pressure
+the elastic part of the slip and w(g) = g^2/(2 l) up to the elastic slip l, g - l/2 beyond it. So friction
+grows linearly with g to the Coulomb limit mu p, which it reaches at the same slip l whatever the pressure
 is. This is a return mapping whose history variable is g at the last converged step, so that a sticking
 point does not creep from step to step. The pressure p = kn o (1 + (o/h)^4) is almost linear below the
 overlap h and grows with the fifth power of o above it, which bounds the penetration.
@@ -19,7 +19,7 @@ points slip and where they pass the rounded edge).
 A point that first touches in this step slips only for the fraction of the step in which it touches, estimated
 from the step's start value.
 
-The kernels read the contact's constants from `law`: kn [Pa/m], s [m], mu, h [m].
+The kernels read the contact's constants from `law`: kn [Pa/m], l [m], mu, h [m].
 """
 
 # mypy: disable-error-code="no-untyped-def,valid-type,index,attr-defined,operator"
