@@ -16,7 +16,7 @@ from tisim.mesh._snap import Snapped, snap
 Floats = NDArray[np.float64]
 
 # Version of the mesh, raised when the mesh of a poke changes; a dataset has one version only.
-LAYOUT = 2
+LAYOUT = 3
 # Coefficient of friction from which the surface sticks to most of the rod's tip.
 STICKS = 0.6
 # Exponent, less 1, of the positions of the rings beside the rod where the surface slides.
@@ -79,7 +79,7 @@ def poke_mesh(
     friction : float
         Coefficient of friction; the rings beside the rod are closer to it where the surface slides.
     refinement : float
-        Factor by which spacings become smaller, 0.5 to 6; with 1 there are about 2,600 nodes without an
+        Factor by which spacings become smaller, 0.5 to 6; with 1 there are about 2,900 nodes without an
         inclusion (3,500 of hex8).
     kind : "hex20", "hex8", "tet4" or "tet10"
         Type of the elements. Hexahedra include wedges (with repeated nodes) where an inclusion's outline cuts
@@ -266,7 +266,7 @@ class _Grids:
         self.stretch = 1.0 / float(np.cos(tilt))
         self.quadratic = kind == "hex20"
         if self.quadratic:  # about half as many rays and rings, since there are nodes between them
-            self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(4, round(8 * refinement))
+            self.n_theta, self.n_outer = 4 * max(2, round(2 * refinement)), max(5, round(10 * refinement))
         else:
             self.n_theta, self.n_outer = 4 * max(3, round(5 * refinement)), max(5, round(9 * refinement))
 
