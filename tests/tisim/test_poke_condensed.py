@@ -237,14 +237,14 @@ def test_a_near_part_that_fails_says_why(monkeypatch: pytest.MonkeyPatch, status
 
 
 def test_the_force_is_that_of_newton_on_the_whole_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    poke = replace(scene(), solver=tisim.Solver(tolerance=1e-5, max_iterations=40))
+    poke = replace(scene(), solver=tisim.Solver(tolerance=1e-6, max_iterations=40))
     condensed = solve_poke(poke)
     monkeypatch.setattr(condensed_module, "REACH", -1.0)
     whole = solve_poke(poke)
     assert condensed.ok
     assert whole.ok
     size = np.linalg.norm(whole.rod_force, axis=1)
-    assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 2e-4 * size).all()
+    assert (np.linalg.norm(condensed.rod_force - whole.rod_force, axis=1) < 2e-5 * size).all()
 
 
 def test_a_way_that_turns_elements_over_is_taken_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
