@@ -209,26 +209,42 @@ def check_poke(data: Dataset, index: int) -> Iterator[FrameForces]:
     tolerance = float(data.attributes["solver_tolerance"])
     # a rod that has been retracted presses with nothing, and forces of stored positions are rounded
     load = np.maximum(np.linalg.norm(poke.rod_force, axis=1), FORCE_FLOOR)
-    inside = Interior(mesh, material, surface, poke.surface - poke.surface_rest, INSIDE * tolerance * load)
     held = np.zeros(mesh.n_nodes, dtype=bool)
     held[mesh.node_sets["base"]] = True
     on_surface = np.zeros(mesh.n_nodes, dtype=bool)
     on_surface[surface] = True
-    for frame, x in enumerate(inside):
-        forces = nodal_forces(mesh, material, x)
+
+    def forces_at(frame: int, x: Array) -> FrameForces:
+        forces, size = nodal_forces(mesh, material, x), load[frame]
         touched = _touched(mesh, x, poke.rod_tip[frame], poke.direction, rod) & ~held
-        size = load[frame]
 
-        def part(nodes: NDArray[np.bool_], forces: Array = forces, size: float = size) -> float:
-            return float(np.linalg.norm(forces[nodes])) / size
+        def part(vectors: Array) -> float:
+            return float(np.linalg.norm(vectors)) / size
 
-        yield FrameForces(
+        return FrameForces(
             frame=frame,
-            inside=part(~on_surface),
-            free=part(on_surface & ~held & ~touched),
-            rod=float(np.linalg.norm(forces[touched].sum(axis=0) + poke.rod_force[frame])) / size,
-            base=float(np.linalg.norm(forces[held].sum(axis=0) - poke.base_force[frame])) / size,
+            inside=part(forces[~on_surface]),
+            free=part(forces[on_surface & ~held & ~touched]),
+            rod=part(forces[touched].sum(axis=0) + poke.rod_force[frame]),
+            base=part(forces[held].sum(axis=0) - poke.base_force[frame]),
         )
+
+    found: dict[int, FrameForces] = {}
+
+    def balanced(frame: int, x: Array) -> bool:
+        found[frame] = forces_at(frame, x)
+        return not any(found[frame].faults(tolerance))
+
+    inside = Interior(
+        mesh,
+        material,
+        surface,
+        poke.surface - poke.surface_rest,
+        INSIDE * tolerance * load,
+        balanced=balanced,
+    )
+    for frame, _ in enumerate(inside):
+        yield found[frame]
 
 
 def nodal_forces(mesh: Mesh, material: Material, x: Array) -> Array:

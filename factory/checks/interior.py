@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ Ints = NDArray[np.integer[Any]]
 
 _ITERATIONS, _HALVINGS = 40, 5
 _PARTS = tuple(0.5**k for k in range(7))  # of a Newton step: the first one that brings it nearer is taken
+_SAME = 1e-6  # m: positions that differ by less are one equilibrium
 _SLOW = 0.3  # what an iteration leaves of the forces, above which the tangent is factorised anew
 
 
@@ -26,14 +27,28 @@ class NoInteriorError(Exception):
 class Interior:
     """Positions of all nodes, frame by frame: the surface as stored, the interior in equilibrium."""
 
-    def __init__(self, mesh: Mesh, material: Material, surface: Ints, moved: Array, tolerance: Array) -> None:
-        """Take displacements `moved` (frames, k, 3) [m] of the nodes `surface`, `tolerance` (frames,) [N]."""
+    def __init__(
+        self,
+        mesh: Mesh,
+        material: Material,
+        surface: Ints,
+        moved: Array,
+        tolerance: Array,
+        *,
+        balanced: Callable[[int, Array], bool],
+    ) -> None:
+        """Take displacements `moved` (frames, k, 3) [m] of the nodes `surface`, `tolerance` (frames,) [N].
+
+        Crushed tissue may have several equilibria inside one surface. While `balanced(frame, positions)` is
+        false, another one is sought in shorter steps from the frame before; the last one counts.
+        """
         from tisim.discretisation.body import Discretisation, DiscretisedBody
 
         self._mesh, self._surface, self._moved, self._tolerance = mesh, surface, moved, tolerance
         self._discretisation = Discretisation.build(mesh, surface.astype(np.int32))
         self._body = DiscretisedBody(self._discretisation, material)
         self._free = self._discretisation.pattern.free
+        self._balanced = balanced
 
     def __iter__(self) -> Iterator[Array]:
         x, before = self._mesh.nodes.copy(), np.zeros_like(self._moved[0])
@@ -43,7 +58,8 @@ class Interior:
             yield x
 
     def _to(self, frame: int, x: Array, before: Array, moved: Array) -> Array:
-        """Positions for the next surface, reached in one step or, if that fails, in 2, 4, ... steps."""
+        """Positions for the next surface, reached in one step or, if these are not balanced, in 2, 4, ..."""
+        reached: Array | None = None
         for halving in range(_HALVINGS):
             parts = 2**halving
             at = x
@@ -55,8 +71,13 @@ class Interior:
                     break
                 at = found
             else:
-                return at
-        raise NoInteriorError
+                again = reached is not None and float(np.abs(at - reached).max()) < _SAME
+                reached = at
+                if self._balanced(frame, at) or again:
+                    return at
+        if reached is None:
+            raise NoInteriorError
+        return reached
 
     def _step(self, x: Array, aim: Array, tolerance: float) -> Array | None:
         """Interior equilibrium for the surface displaced by `aim`, from x; None without convergence."""

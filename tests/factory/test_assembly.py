@@ -89,7 +89,9 @@ def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> No
     mesh, poke = equilibrium._mesh(data, 0), data.poke(0)
     surface = np.unique(mesh.facet_sets["surface"])
     moved = poke.surface - poke.surface_rest
-    inside = Interior(mesh, equilibrium._material(data, 0), surface, moved, np.full(2, 1e-5))
+    inside = Interior(
+        mesh, equilibrium._material(data, 0), surface, moved, np.full(2, 1e-5), balanced=lambda *_: True
+    )
     at_rest = next(iter(inside))
     body, solver, free = inside._body, inside._discretisation.solver, inside._free
     away = at_rest.copy()
@@ -110,6 +112,44 @@ def test_a_step_that_turns_elements_over_is_taken_in_part(simulated: Path) -> No
     half = inside._nearer(away, step, left)
     assert half is not None
     np.testing.assert_allclose(half[0][free], away[free] - 0.5 * step, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("places", "balanced", "ends_at", "steps"),
+    [
+        ([1.0], [True], 1.0, [1.0]),
+        ([1.0, 2.0, 3.0], [False, True], 3.0, [1.0, 0.5, 1.0]),  # another one, in two steps
+        ([1.0, 2.0, 1.0], [False, False], 1.0, [1.0, 0.5, 1.0]),  # found again
+        ([1.0, None, 2.0, 3.0, 4.0, 5.0], [False, True], 5.0, [1.0, 0.5, 0.25, 0.5, 0.75, 1.0]),
+    ],
+)
+def test_another_interior_equilibrium_is_sought_while_the_forces_do_not_balance(
+    simulated: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    places: list[float | None],
+    balanced: list[bool],
+    ends_at: float,
+    steps: list[float],
+) -> None:
+    """Where Newton's method ends (all nodes at `places`) depends on the length of the surface's steps."""
+    data = open_dataset(simulated)
+    mesh = equilibrium._mesh(data, 0)
+    surface = np.unique(mesh.facet_sets["surface"])
+    moved = np.ones((1, len(surface), 3))
+    answers, found, aims = iter(balanced), iter(places), []
+
+    def step(_self: Interior, x: np.ndarray, aim: np.ndarray, _: float) -> np.ndarray | None:
+        aims.append(float(aim[0, 0]))
+        place = next(found)
+        return None if place is None else np.full_like(x, place)
+
+    monkeypatch.setattr(Interior, "_step", step)
+    inside = Interior(
+        mesh, equilibrium._material(data, 0), surface, moved, np.full(1, 1e-5),
+        balanced=lambda *_: next(answers),
+    )  # fmt: skip
+    assert (next(iter(inside)) == ends_at).all()
+    assert aims == steps
 
 
 @pytest.mark.parametrize(
