@@ -187,7 +187,7 @@ def test_a_motion_without_rest_leaves_no_trace(kind: ElementKind) -> None:
             system.begin(0.0)
             if tried and depth == 0.0004:
                 failed = come_to_rest(
-                    system, block, system.previous, tolerance=1e-9, max_iterations=16, kept=True
+                    system, block, system.previous, tolerance=1e-9, max_iterations=48, kept=True
                 )
                 assert failed.status is not Status.CONVERGED
                 assert failed.iterations >= 6

@@ -141,6 +141,18 @@ def test_a_poke_leaves_two_of_32_millimetres() -> None:
     assert (result.min_jacobian > 0.0).all()
 
 
+@pytest.mark.slow
+def test_tissue_that_slides_out_without_friction_comes_to_rest() -> None:
+    """At 7 mm it slides for some 300 iterations of the damped motion (studies/depth)."""
+    nearly_incompressible = tisim.material_from_moduli(
+        "neo-hookean", shear_modulus=SHEAR, bulk_modulus=300.0 * SHEAR
+    )
+    result = solve_poke(
+        poke(material=nearly_incompressible, friction=0.0, depth=0.01, frame_spacing=1e-3, refinement=1.0)
+    )
+    assert result.ok, result.message
+
+
 def test_axisymmetric_reference() -> None:
     """Force at 1, 2, 5 and 10 mm within 1.5 % of axisymmetric quadratic elements (FElupe)."""
     forces = {int(d): v["force"] for d, v in REFERENCE["values"]["0.6"].items()}

@@ -68,7 +68,8 @@ def poke_mesh(
 
     A round inclusion is approximated by chords and facets: the corners lie on its surface, and its meshed
     volume is a few percent too small, of a small sphere in linear elements up to 30 %. If no grid is within
-    the tolerance of the volume, the closest one is used. Soft material thinner than 1 mm between an inclusion and the base is meshed as rigid.
+    the tolerance of the volume, the closest one is used. Soft material thinner than 1 mm between an inclusion
+    and the base is meshed as rigid.
 
     Parameters
     ----------

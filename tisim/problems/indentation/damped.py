@@ -40,11 +40,12 @@ NEAR, AGAIN, FEW, HOPEFUL, TRIED = 6.0, 0.3, 4, 0.3, 12
 
 # Longest step for which a motion is tried [m].
 LONGEST = 0.2e-3
-# Iterations of the direct attempt and of the motion, in units of the largest number of a step.
-STRAIGHT, IN_MOTION = 0.5, 4.0
+# Iterations of the direct attempt and of the motion, in units of the largest number of a step. Tissue that
+# slides out from under the rod without friction needs up to 320 of the 480 (studies/depth).
+STRAIGHT, IN_MOTION = 0.5, 12.0
 # The motion is abandoned unless its drag has fallen to the fraction LOW of the first within the fraction SOON
 # of its iterations: over crushed tissue it does not fall.
-LOW, SOON = 0.1, 0.375
+LOW, SOON = 0.1, 0.125
 
 
 def solve_step(
