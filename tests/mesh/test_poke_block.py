@@ -130,6 +130,22 @@ def test_any_poke_gets_a_good_quadratic_mesh(seed):
     assert np.abs(off).max() <= 1e-12
 
 
+@pytest.mark.parametrize(
+    ("radius", "centre", "site", "direction"),
+    [
+        # few rays pass through a sphere that is far from the rod
+        (0.013404, (0.023035, 0.022812, 0.013404), (-0.004659, -0.024789), (0.24541, 0.0113, -0.96935)),
+        (0.013075, (-0.026485, -0.010567, 0.013075), (-0.00241, -0.024562), (0.13402, -0.27871, -0.95098)),
+        # of a cap that has its plan area, the facets kept 64 % of the volume
+        (0.004706, (-0.016799, 0.023426, 0.0), (0.02555, -0.020647), (0.06525, 0.07138, -0.99531)),
+    ],
+    ids=["far", "far and beside", "cap"],
+)
+def test_a_sphere_far_from_the_rod_is_met_by_linear_elements(radius, centre, site, direction):
+    block = Block(inclusion=SphereInclusion(radius=radius, centre=centre))
+    assert_good(linear(block=block, site=site, direction=direction, rod=ROD), block)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["hex8", "hex20"])
 def test_1320_random_pokes_all_get_good_meshes(kind):
