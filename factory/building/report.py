@@ -26,6 +26,7 @@ from factory.recipe.course import HoldRecipe, deepest
 from factory.simulation.record import Trace
 from factory.store.files import manifest_digest, read_ledger
 from factory.store.staging import Staging
+from tisim.parallel.termination import uninterrupted
 from tisim.problems._stops import shortest_time
 from tisim.problems.indentation.steps import LARGEST_STEP
 
@@ -321,7 +322,7 @@ class Screen:
         )
 
     def _add(self, index: int, payload: bytes) -> None:
-        with np.load(io.BytesIO(payload)) as part:
+        with uninterrupted(), np.load(io.BytesIO(payload)) as part:
             depth = part["depth"]
             deepest = part["grid_displacement"][int(np.argmax(depth))] if len(depth) else None
             self._traces[index] = Trace(

@@ -36,6 +36,7 @@ from factory.plan.poke import PlannedPoke
 from factory.simulation.record import Outcome, check_arrays
 from factory.store.files import read_json
 from tisim.io.whole import whole_file
+from tisim.parallel.termination import uninterrupted
 
 log = logging.getLogger(__name__)
 _RESULT = re.compile(r"poke-(\d{5,})\.npz")
@@ -138,7 +139,7 @@ class Staging:
     def opened(self, index: int) -> Iterator[Mapping[str, NDArray[Any]]]:
         """Open the arrays of a staged result, each read on access; DamagedResultError if one cannot be."""
         with contextlib.ExitStack() as stack:
-            with _damage_named(index):
+            with _damage_named(index), uninterrupted():
                 file = stack.enter_context(self.result_path(index).open("rb"))
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):

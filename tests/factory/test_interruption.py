@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import hashlib
+import io
 import multiprocessing
 import os
 import random
@@ -23,8 +24,10 @@ from typing import Any
 import numpy as np
 import psutil
 import pytest
+from rich.console import Console
 
 from factory.building.build import build_dataset
+from factory.building.report import Screen, estimate
 from factory.errors import InputError
 from factory.plan import Plan, make_plan
 from factory.reader import open_dataset
@@ -279,6 +282,33 @@ def test_disk_full_while_the_store_is_written(
     assert not target.exists()
     assert standin_build(quick, target).simulated == 0
     assert digest(target) == digest(quick_store)
+
+
+def test_ctrl_c_waits_until_a_result_is_open(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It did not, and a file of zipfile that is interrupted while it is made prints a traceback."""
+    payload = io.BytesIO()
+    np.savez(payload, depth=np.zeros(0), rod_force=np.zeros((0, 3)), grid_displacement=np.zeros((0, 4, 3)))
+    target, console = tmp_path / "a.zarr", Console(file=io.StringIO())
+    seen = Screen(plan, target, console, estimate(plan, target, 1))
+    staged = Staging(target)
+    staged.results.mkdir(parents=True)
+    staged.result_path(0).write_bytes(payload.getvalue())
+    load, opened = np.load, []
+
+    def interrupted(*arguments: Any, **options: Any) -> object:
+        signal.raise_signal(signal.SIGINT)
+        found = load(*arguments, **options)
+        opened.append(found)
+        return found
+
+    monkeypatch.setattr(np, "load", interrupted)
+    with pytest.raises(KeyboardInterrupt), staged.opened(0):
+        pass
+    with pytest.raises(KeyboardInterrupt):
+        seen._add(0, payload.getvalue())
+    assert len(opened) == 2
 
 
 def test_ctrl_c_ends_cleanly_and_goes_on(

@@ -1,4 +1,4 @@
-"""Handling of SIGTERM, which cluster schedulers send, like Ctrl-C."""
+"""Handling of Ctrl-C, and of SIGTERM, which cluster schedulers send, in the same way."""
 
 from __future__ import annotations
 
@@ -24,3 +24,29 @@ def terminable() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Context in which Ctrl-C and SIGTERM wait until its end; without effect outside the main thread.
+
+    For short work that an exception must not leave half done: an object of zipfile that is interrupted while
+    it is made prints a traceback when it is deleted.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    waiting: list[int] = []
+
+    def wait(number: int, _frame: object) -> None:
+        waiting.append(number)
+
+    # not by a mask: another thread would take the signal, and its handler would run in this one
+    before = {number: signal.signal(number, wait) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if waiting:
+            signal.raise_signal(waiting[0])
