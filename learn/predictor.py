@@ -214,8 +214,8 @@ def load(run: Path | str | Sequence[Path | str], *, dataset: Path | str | None =
     """Load a trained run for predictions.
 
     Intervals are those that `learn.evaluate` made last for the run: calibrated on the validation part of its
-    dataset, or on the other folds if it was evaluated together with them. Those of "covers" are calibrated on
-    its validation part alone (36 indentations of 6 shapes); `repr` of the predictor states the number.
+    dataset, or on the other folds if it was evaluated together with them, as "covers" was
+    (185 indentations of the other folds); `repr` of the predictor states the number.
 
     Parameters
     ----------

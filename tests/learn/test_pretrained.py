@@ -42,8 +42,8 @@ def test_each_is_complete(name: str) -> None:
     number = f"{predictor.intervals.pokes} indentations"
     assert f"intervals: 90 %, calibrated on {number}\n" in repr(predictor)
     card = " ".join((folder / "card.md").read_text().split())
-    assert f"calibrated on the validation part alone: {number} of 6 shapes" in card
-    assert f"({number} of 6 shapes)" in " ".join(str(learn.load.__doc__).split())
+    assert f"calibrated on {number} of the other folds" in card
+    assert f"({number} of the other folds)" in " ".join(str(learn.load.__doc__).split())
     tables = load_tables(folder / TABLES)
     assert tables.uuid == run.uuid
     assert tables.location == run.location
